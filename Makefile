@@ -1,0 +1,46 @@
+# `make demo` and `make test` need Python 3.11 or newer, pip and make, and nothing else.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+SCENARIO := out/demo.toml
+
+.PHONY: demo test test-slow bench faults lint format clean
+
+demo: $(READY)
+	@mkdir -p out
+	@$(BIN)/movingfrf new $(SCENARIO)
+	@$(BIN)/movingfrf run $(SCENARIO) --output out/demo
+
+test: $(READY) lint
+	$(BIN)/pytest -q
+
+test-slow: $(READY)
+	$(BIN)/pytest -q -m slow
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: $(READY)
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: $(READY)
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/bench.py
+
+faults: $(READY)
+	$(BIN)/python -m tests.faults
+
+# An editable install, redone when the dependencies change. The mark is set last: an interrupted
+# installation is taken up again.
+$(READY): pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "movingfrf needs Python 3.11 or newer: make PYTHON=python3.11 ...")'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $(READY)
+
+clean:
+	rm -rf $(VENV) out

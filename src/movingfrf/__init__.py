@@ -1,0 +1,49 @@
+"""How vehicles and roads shake each other, computed in the frequency domain with moving FRFs."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from movingfrf.version import VERSION
+
+__version__ = VERSION
+
+# Public name → the module it lives in. Loaded on first use: importing the package costs next to nothing.
+_WHERE = {
+    "EulerBernoulliBeam": "guideways.track",
+    "TimoshenkoBeam": "guideways.track",
+    "Spring": "guideways.track",
+    "ShearLayer": "guideways.track",
+    "OnMass": "guideways.track",
+    "track": "guideways.track",
+    "RigidGuideway": "guideways.rigid",
+    "Contact": "vehicles.base",
+    "Vehicle": "vehicles.base",
+    "quarter_car": "vehicles.road",
+    "half_car": "vehicles.road",
+    "IsoRoad": "roughness.spectra",
+    "Profile": "roughness.profiles",
+    "realise": "roughness.profiles",
+    "harmonic": "roughness.profiles",
+    "bump": "roughness.profiles",
+    "simulate": "simulate",
+    "moving_loads": "simulate",
+    "ParameterError": "_checks",
+    "SolveError": "_checks",
+    "ValidityWarning": "_checks",
+}
+
+__all__ = sorted(_WHERE)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _WHERE:
+        raise AttributeError(f"module 'movingfrf' has no attribute {name!r}")
+    value = getattr(import_module(f"movingfrf.{_WHERE[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

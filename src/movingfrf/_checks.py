@@ -1,0 +1,167 @@
+"""What the package says when something is wrong: exceptions, warnings and the checks that raise them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from numbers import Real
+from typing import Any, NamedTuple
+
+import numpy as np
+import psutil
+from numpy.typing import ArrayLike, NDArray
+
+FloatArray = NDArray[np.floating[Any]]
+ComplexArray = NDArray[np.complexfloating[Any, Any]]
+# Real or complex.
+NumberArray = NDArray[np.inexact[Any]]
+IntArray = NDArray[np.integer[Any]]
+BoolArray = NDArray[np.bool_]
+
+# Physical quantities in SI units lie far inside these bounds; beyond them powers overflow.
+SMALLEST, LARGEST = 1e-30, 1e30
+
+# The share of the free memory that one computation may plan to take.
+MEMORY_SHARE = 0.8
+
+
+class Fault(NamedTuple):
+    """One refused parameter: its name and the sentence that says why."""
+
+    name: str
+    message: str
+
+
+class ParameterError(ValueError):
+    """One or more impossible parameters; `faults` lists all of them.
+
+    Parameters
+    ----------
+    faults : sequence of Fault
+        What was refused, in the order in which it was found.
+    """
+
+    def __init__(self, faults: Sequence[Fault]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("; ".join(f"{fault.name} {fault.message}" for fault in self.faults))
+
+
+class SolveError(RuntimeError):
+    """The question has no meaningful answer: unstable coupling, a singular frequency, an overflow."""
+
+
+class ValidityWarning(UserWarning):
+    """The answer lies outside the assumptions it was computed under."""
+
+
+class Checks:
+    """Collects faults, so that one error can name every one of them.
+
+    Each check returns the value in the type that the caller stores; after a fault the returned value is
+    meaningless and the surrounding `checking` block raises.
+    """
+
+    def __init__(self) -> None:
+        self.faults: list[Fault] = []
+
+    def refuse(self, name: str, message: str) -> None:
+        """Record that `name` is refused because of `message`."""
+        self.faults.append(Fault(name, message))
+
+    def finite(self, name: str, value: Any, unit: str, condition: str = "a finite number") -> float:
+        """Demand a real, finite number of credible magnitude."""
+        if not isinstance(value, Real) or isinstance(value, bool):
+            self.refuse(name, f"must be {condition} [{unit}], got {value!r}")
+            return float("nan")
+        number = float(value)
+        if not np.isfinite(number):
+            self.refuse(name, f"must be {condition}, got {number!r} {unit}")
+        elif number and not SMALLEST <= abs(number) <= LARGEST:
+            self.refuse(name, f"must be of a magnitude within 1e-30 and 1e30, got {number!r} {unit}")
+        else:
+            return number
+        return float("nan")
+
+    def positive(self, name: str, value: Any, unit: str) -> float:
+        """Demand a number above zero."""
+        number = self.finite(name, value, unit, "a positive number")
+        if number <= 0:
+            self.refuse(name, f"must be positive, got {number!r} {unit}")
+        return number
+
+    def not_negative(self, name: str, value: Any, unit: str) -> float:
+        """Demand a number of at least zero."""
+        number = self.finite(name, value, unit, "a number of at least zero")
+        if number < 0:
+            self.refuse(name, f"must not be negative, got {number!r} {unit}")
+        return number
+
+    def whole(self, name: str, value: Any, *, least: int = 0) -> int:
+        """Demand a whole number of at least `least`."""
+        if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
+            self.refuse(name, f"must be a whole number of at least {least}, got {value!r}")
+            return least
+        return int(value)
+
+    def array(self, name: str, value: ArrayLike, unit: str, shape: tuple[int | None, ...]) -> FloatArray:
+        """Demand finite numbers in an array of the given shape (None: any length); returns a frozen copy."""
+        try:
+            array = np.array(value, dtype=float)
+        except (TypeError, ValueError, OverflowError):
+            self.refuse(name, f"must be an array of numbers [{unit}], got {type(value).__name__}")
+            return np.full([n or 1 for n in shape], np.nan)
+        wanted = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
+        if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
+            self.refuse(name, f"must have shape {wanted}, got {array.shape}")
+            return np.full([n or 1 for n in shape], np.nan)
+        bad = np.argwhere(~(np.abs(array) <= LARGEST))
+        if bad.size:
+            place = tuple(int(i) for i in bad[0])
+            self.refuse(
+                name,
+                f"must be finite and at most 1e30 {unit} throughout, got {float(array[place])!r} "
+                f"at index {place[0] if len(place) == 1 else place}",
+            )
+        array.flags.writeable = False
+        return array
+
+    def pair(self, name: str, value: Any, unit: str, *, positive: bool = True) -> tuple[float, float]:
+        """Demand two numbers, front and rear: positive ones, or at least zero."""
+        try:
+            front, rear = value
+        except (TypeError, ValueError):
+            self.refuse(name, f"must be two numbers (front, rear) [{unit}], got {value!r}")
+            return (float("nan"), float("nan"))
+        check = self.positive if positive else self.not_negative
+        return check(f"{name}[0]", front, unit), check(f"{name}[1]", rear, unit)
+
+
+@contextmanager
+def checking() -> Iterator[Checks]:
+    """Run a block of checks and raise one `ParameterError` at its end if any of them failed."""
+    checks = Checks()
+    yield checks
+    if checks.faults:
+        raise ParameterError(checks.faults)
+
+
+def require_memory(needed: float, what: str) -> None:
+    """Refuse a computation that would not fit into the free memory.
+
+    Parameters
+    ----------
+    needed : float
+        Bytes that the computation takes at its peak.
+    what : str
+        The quantity that makes it large, with its value, for the message.
+
+    Raises
+    ------
+    ValueError
+        If `needed` exceeds four fifths of the free memory.
+    """
+    available = psutil.virtual_memory().available
+    if needed > MEMORY_SHARE * available:
+        raise ValueError(
+            f"{what} needs about {needed / 2**30:.3g} GiB of memory, but only {available / 2**30:.3g} GiB are free"
+        )

@@ -1,0 +1,1 @@
+"""Guideways: what carries the contact."""

@@ -1,0 +1,116 @@
+"""At which speed a steady load meets the waves of its own guideway."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from movingfrf._checks import FloatArray
+from movingfrf.guideways.waves import Ratio, residue_sum
+
+# Wavenumbers looked at, per decade, over six decades; each refinement shrinks the bracket sixteenfold.
+PER_DECADE, REFINEMENTS, POINTS = 20, 6, 33
+
+# Speeds up to the limit, and points of the deflection basin, among which the greatest deflection is sought.
+SPEEDS, BASIN = 160, 241
+
+
+class PhaseVelocity(NamedTuple):
+    """A phase velocity [m/s], and whether shorter waves travel slower still, without a lower bound."""
+
+    value: float
+    unbounded: bool
+
+
+def first_stationary_velocity(lossless: Ratio) -> PhaseVelocity:
+    """First stationary phase velocity of an undamped guideway, searched branch by branch from long waves on.
+
+    Parameters
+    ----------
+    lossless : Ratio
+        Dynamic stiffness without damping [N/m²]: only even powers of κ and p.
+
+    Returns
+    -------
+    PhaseVelocity
+        Without masses in the foundation the minimum over all waves. With them the velocity of short waves
+        sinks to zero (each mass vibrates for itself), `unbounded` is True and the value is the first local
+        minimum; inf if there is none.
+    """
+    table = lossless.above[::2, ::2]
+    leading = table[np.flatnonzero(table.any(axis=1))[-1]]
+    # The shortest waves have a frequency of their own where the leading power of κ is multiplied by p².
+    unbounded = bool(leading[1:].any())
+    static = np.flatnonzero(table[:, 0])
+    scale = (table[0, 0] / table[static[-1], 0]) ** (0.5 / static[-1])
+    kappa = scale * np.geomspace(1e-3, 1e3, 6 * PER_DECADE + 1)
+    branches = _phase_velocities(table, kappa)
+    for number, branch in enumerate(branches.T):
+        dips = np.flatnonzero((branch[1:-1] < branch[:-2]) & (branch[1:-1] <= branch[2:])) + 1
+        if dips.size:
+            around = kappa[dips[0] - 1], kappa[dips[0] + 1]
+            return PhaseVelocity(_refined_minimum(table, around, number), unbounded)
+    return PhaseVelocity(float("inf") if unbounded else float(branches.min()), unbounded)
+
+
+def _phase_velocities(table: FloatArray, kappa: FloatArray) -> FloatArray:
+    """Ω/κ of every branch in ascending order, shape (wavenumber, branch)."""
+    # Polynomials in p² = −Ω², with κ given.
+    in_p2 = (kappa[:, None] ** 2) ** np.arange(table.shape[0]) @ table
+    degree = in_p2.shape[1] - 1
+    if degree == 1:
+        return np.sqrt(in_p2[:, :1] / in_p2[:, 1:]) / kappa[:, None]
+    companion = np.zeros((kappa.size, degree, degree))
+    companion[:, np.arange(1, degree), np.arange(degree - 1)] = 1.0
+    companion[:, :, -1] = -in_p2[:, :-1] / in_p2[:, -1:]
+    squares = -np.linalg.eigvals(companion).real
+    return np.sort(np.sqrt(np.maximum(squares, 0.0)), axis=1) / kappa[:, None]
+
+
+def _refined_minimum(table: FloatArray, around: tuple[float, float], number: int) -> float:
+    """Minimum of one branch between two wavenumbers."""
+    for _ in range(REFINEMENTS):
+        kappa = np.linspace(*around, POINTS)
+        velocity = _phase_velocities(table, kappa)[:, number]
+        lowest = min(max(int(velocity.argmin()), 1), POINTS - 2)
+        around = kappa[lowest - 1], kappa[lowest + 1]
+    return float(velocity.min())
+
+
+def speed_of_greatest_deflection(stiffness: Ratio, limit: float) -> float:
+    """Speed at which a steady load deflects the guideway most.
+
+    Parameters
+    ----------
+    stiffness : Ratio
+        Dynamic stiffness with damping [N/m²].
+    limit : float
+        Upper end of the search [m/s].
+
+    Returns
+    -------
+    float
+        The speed [m/s]; inf if the deflection is greatest at rest, so that no speed is critical.
+    """
+    static = np.flatnonzero(stiffness.above[:, 0])
+    length = (stiffness.above[static[-1], 0] / stiffness.above[0, 0]) ** (1 / static[-1])
+    basin = length * np.linspace(-8.0, 4.0, BASIN)
+
+    def shallowness(speed: float) -> float:
+        deflection = residue_sum(stiffness, basin, speed, np.zeros(1, complex), 0)[:, 0].real
+        peak = min(max(int(deflection.argmax()), 1), BASIN - 2)
+        left, middle, right = deflection[peak - 1 : peak + 2]
+        # The vertex of the parabola through the three highest points.
+        return -float(middle - (right - left) ** 2 / (8 * (right - 2 * middle + left)))
+
+    # Open at the limit, where the deflection of an undamped guideway is infinite.
+    speeds = limit * np.linspace(0.0, 1.0 - 1e-9, SPEEDS)
+    values = np.array([shallowness(speed) for speed in speeds])
+    best = int(values.argmin())
+    if best == 0:
+        return float("inf")
+    bounds = speeds[best - 1], speeds[min(best + 1, SPEEDS - 1)]
+    found = minimize_scalar(shallowness, bounds=bounds, method="bounded", options={"xatol": 1e-9 * limit})
+    return float(found.x)

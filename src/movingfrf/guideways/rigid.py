@@ -1,0 +1,38 @@
+"""The road that does not give way: null object and limit case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._checks import ComplexArray
+
+
+@dataclass(frozen=True, slots=True)
+class RigidGuideway:
+    """A guideway without any compliance.
+
+    Examples
+    --------
+    >>> RigidGuideway().moving_frf([0.0, 4.0], 10.0, [1.0, 2.0, 3.0]).shape
+    (3, 2)
+    """
+
+    @property
+    def critical_speed(self) -> float:
+        """A rigid road has no waves and no critical speed [m/s]: inf."""
+        return float("inf")
+
+    def moving_frf(
+        self,
+        ahead: ArrayLike,
+        speed: float,
+        omega: ArrayLike,
+        *,
+        across: ArrayLike = 0.0,
+        derivative: int = 0,
+    ) -> ComplexArray:
+        """Zero for all offsets and frequencies [m/N]; see `Guideway.moving_frf` for the arguments."""
+        return np.zeros((np.size(omega), *np.broadcast_shapes(np.shape(ahead), np.shape(across))), complex)

@@ -1,0 +1,293 @@
+r"""Free waves of a one-dimensional guideway, seen by an observer who travels along it.
+
+A guideway is a table. Its dynamic stiffness (force per deflection, per metre) for the wave
+:math:`e^{i(Ωt + κx)}` is a ratio of two polynomials in κ and p = iΩ with *real* coefficients,
+``table[a, b]`` standing for :math:`κ^a p^b`: a mass is :math:`m p^2`, a dashpot :math:`c p`. An observer at
+speed v sees the frequency ω = Ω + κv, hence p = i(ω − κv), and at each ω a polynomial in κ alone. Its roots
+are the waves; the moving FRF is the sum of their residues.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import comb
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._checks import BoolArray, ComplexArray, FloatArray, NumberArray, SolveError
+
+# Below this speed [m/s] the moving frame differs from the fixed one by rounding errors, while the roots that
+# run away to infinity as v → 0 (one per κⁿ that v alone keeps alive) begin to cost digits.
+AT_REST = 1e-13
+
+# A root whose distance from the real axis is within this many rounding errors is taken as real and
+# classified by the direction in which damping would push it.
+REAL_WITHIN = 1e6 * np.finfo(float).eps
+
+
+# Newton steps on a root: the last one moves it by less than this, and squares the error.
+MOST_STEPS, CONVERGED = 3, 1e-9
+
+
+def polynomial(terms: dict[tuple[int, int], float]) -> FloatArray:
+    """Coefficient table from {(power of κ, power of p): coefficient}.
+
+    Examples
+    --------
+    >>> polynomial({(4, 0): 3.0, (0, 0): 2.0}).ravel()
+    array([2., 0., 0., 0., 3.])
+    """
+    table = np.zeros(np.max(list(terms), axis=0) + 1)
+    for powers, coefficient in terms.items():
+        table[powers] += coefficient
+    return table
+
+
+def product(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Table of the product of two polynomials."""
+    table = np.zeros(np.array(first.shape) + second.shape - 1)
+    for a, b in np.argwhere(first):
+        table[a : a + second.shape[0], b : b + second.shape[1]] += first[a, b] * second
+    return table
+
+
+def total(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Table of the sum of two polynomials."""
+    table = np.zeros(np.maximum(first.shape, second.shape))
+    for part in (first, second):
+        table[: part.shape[0], : part.shape[1]] += part
+    return table
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ratio:
+    """A dynamic stiffness as numerator over denominator, two coefficient tables in (κ, p).
+
+    Parameters
+    ----------
+    above, below : ndarray, shape (power of κ, power of p)
+        Real coefficients; numerator over denominator is a force per metre and deflection [N/m²].
+    """
+
+    above: FloatArray
+    below: FloatArray
+
+    def __add__(self, other: Ratio) -> Ratio:
+        """Side by side: the same deflection, forces add."""
+        above = total(product(self.above, other.below), product(other.above, self.below))
+        return Ratio(above, product(self.below, other.below))
+
+    def in_series(self, other: Ratio) -> Ratio:
+        """One on top of the other: the same force, deflections add; ab/(a + b)."""
+        below = total(product(self.above, other.below), product(other.above, self.below))
+        return Ratio(product(self.above, other.above), below)
+
+
+class Polynomials(NamedTuple):
+    """A polynomial in κ per frequency, and the sum of the magnitudes that were added to make it.
+
+    Here, and in all that follows, frequency is the last axis: it is long, the others are short.
+    """
+
+    coefficients: ComplexArray  # (power of κ, frequency), ascending
+    magnitudes: FloatArray
+
+
+def in_moving_frame(table: NumberArray, speed: float, omega: ComplexArray) -> Polynomials:
+    """Put p = i(ω − κv) into a table: one polynomial in κ for each frequency.
+
+    Parameters
+    ----------
+    table : ndarray, shape (power of κ, power of p)
+        Coefficients.
+    speed : float
+        Speed of the observer [m/s].
+    omega : ndarray, shape (frequency,)
+        Frequency in the moving frame [rad/s].
+
+    Returns
+    -------
+    Polynomials
+        Coefficients of shape (power of κ, frequency), without leading powers that vanish.
+    """
+    powers_kappa, powers_p = table.shape
+    speed = 0.0 if abs(speed) < AT_REST else speed
+    rows = powers_kappa + (powers_p - 1 if speed else 0)
+    coefficients = np.zeros((rows, omega.size), complex)
+    magnitudes = np.zeros((rows, omega.size))
+    i_omega = [np.ones_like(omega)]
+    size = [np.ones(omega.size)]
+    for _ in range(powers_p - 1):
+        i_omega.append(i_omega[-1] * (1j * omega))
+        size.append(size[-1] * np.abs(omega))
+    for a, b in np.argwhere(table):
+        for j in range(b + 1 if speed else 1):
+            factor = table[a, b] * comb(b, j) * (-1j * speed) ** j
+            coefficients[a + j] += factor * i_omega[b - j]
+            magnitudes[a + j] += abs(factor) * size[b - j]
+    degree = max((n for n in range(rows) if coefficients[n].any()), default=0)
+    return Polynomials(coefficients[: degree + 1], magnitudes[: degree + 1])
+
+
+def evaluated(coefficients: NumberArray, at: NumberArray) -> NumberArray:
+    """Values of the polynomials (power, frequency) at the points (point, frequency), by Horner's rule."""
+    value = np.zeros_like(at) + coefficients[-1]
+    for row in coefficients[-2::-1]:
+        value *= at
+        value += row
+    return value
+
+
+def slopes(coefficients: ComplexArray) -> ComplexArray:
+    """Coefficients of the derivatives of the polynomials (power, frequency)."""
+    return coefficients[1:] * np.arange(1, len(coefficients))[:, None]
+
+
+def wavenumbers(coefficients: ComplexArray) -> ComplexArray:
+    """All roots κ of each polynomial [rad/m].
+
+    A quartic without cubic term is solved in closed form, anything else by the eigenvalues of its companion
+    matrix (balanced by LAPACK, so that roots of very different size keep their digits). Newton steps then
+    bring each root to rounding accuracy.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (degree + 1, frequency)
+        Coefficients of ascending powers of κ; the last row has no zero.
+
+    Returns
+    -------
+    ndarray, shape (degree, frequency)
+        The roots, in no particular order.
+    """
+    degree = len(coefficients) - 1
+    monic = coefficients[:-1] / coefficients[-1]
+    if degree == 4 and not coefficients[3].any():
+        roots = _quartic(monic[2], monic[1], monic[0])
+    else:
+        companion = np.zeros((coefficients.shape[1], degree, degree), complex)
+        companion[:, np.arange(1, degree), np.arange(degree - 1)] = 1.0
+        companion[:, :, -1] = -monic.T
+        roots = np.ascontiguousarray(np.linalg.eigvals(companion).T)
+    slope = slopes(coefficients)
+    for _ in range(MOST_STEPS):
+        with np.errstate(all="ignore"):
+            step = evaluated(coefficients, roots) / evaluated(slope, roots)
+            # At a multiple root the slope vanishes and so does the need to move.
+            step = np.where(np.isfinite(step), step, 0.0)
+        roots -= step
+        if (_squared(step) <= CONVERGED**2 * _squared(roots)).all():
+            break
+    return roots
+
+
+def _quartic(p: ComplexArray, q: ComplexArray, r: ComplexArray) -> ComplexArray:
+    """Roots of x⁴ + p x² + q x + r by Ferrari's method, shape (4, frequency)."""
+    # Resolvent cubic m³ + p m² + (p²/4 − r) m − q²/8 = 0 by Cardano, depressed with m = y − p/3.
+    linear = -(p * p) / 12 - r
+    constant = (p * r) / 3 - p * p * p / 108 - q * q / 8
+    square_root = np.sqrt(constant * constant / 4 + linear * linear * linear / 27)
+    # The sign without cancellation, then the branch that gives the largest m: m = 0 would divide by zero.
+    opposed = constant.real * square_root.real + constant.imag * square_root.imag > 0
+    u = (np.where(opposed, -square_root, square_root) - constant / 2) ** (1 / 3)
+    with np.errstate(all="ignore"):
+        partner = np.where(u == 0, 0.0, linear / (3 * u))
+    turns = np.exp(2j * np.pi / 3 * np.arange(3))[:, None]
+    m = turns * u - np.conj(turns) * partner - p / 3
+    m = np.take_along_axis(m, _squared(m).argmax(axis=0)[None], axis=0)[0]
+    root = np.sqrt(2 * m)
+    with np.errstate(all="ignore"):
+        quotient = np.where(root == 0, 0.0, 2 * q / root)
+    first = np.sqrt(-(2 * p + 2 * m + quotient))
+    second = np.sqrt(-(2 * p + 2 * m - quotient))
+    roots: ComplexArray = np.stack([root + first, root - first, second - root, -root - second])
+    roots *= 0.5
+    return roots
+
+
+def _squared(values: NumberArray) -> FloatArray:
+    """Squared magnitude; several times faster than the magnitude."""
+    return values.real**2 + values.imag**2
+
+
+def residue_sum(
+    stiffness: Ratio, ahead: FloatArray, speed: float, omega: ComplexArray, derivative: int
+) -> ComplexArray:
+    """Evaluate the moving FRF by closing the contour of the inverse Fourier integral over κ.
+
+    For receivers ahead of the source the waves with Im κ > 0 count, behind those with Im κ < 0; how many
+    there are on each side is found, never assumed. A root on the real axis belongs to the side to which the
+    limit ω − i0⁺ pushes it.
+
+    Parameters
+    ----------
+    stiffness : Ratio
+        Dynamic stiffness of the guideway [N/m²].
+    ahead : ndarray, shape (offset,)
+        Receiver minus source [m].
+    speed : float
+        Common speed [m/s].
+    omega : ndarray, shape (frequency,)
+        Frequency in the moving frame [rad/s], Im ω ≤ 0.
+    derivative : int
+        Order of the derivative with respect to x.
+
+    Returns
+    -------
+    ndarray, shape (offset, frequency)
+        Moving FRF [m/N/m^derivative].
+
+    Raises
+    ------
+    SolveError
+        If the response is infinite: an undamped guideway at a cut-off frequency or a critical speed.
+    """
+    with np.errstate(all="ignore"):
+        denominator = in_moving_frame(stiffness.above, speed, omega)
+        numerator = in_moving_frame(stiffness.below, speed, omega)
+        kappa = wavenumbers(denominator.coefficients)
+        slope = evaluated(slopes(denominator.coefficients), kappa)
+        weight = 1j * evaluated(numerator.coefficients, kappa) / slope
+        if derivative:
+            weight *= (1j * kappa) ** derivative
+        side = kappa.imag.copy()
+        rounding = REAL_WITHIN * evaluated(denominator.magnitudes, np.abs(kappa))
+        doubtful = np.abs(side) * np.abs(slope) <= rounding
+        if doubtful.any():
+            # Im κ(ω − i0⁺) has the sign of Re(∂D/∂ω ÷ ∂D/∂κ).
+            by_omega = in_moving_frame(_by_omega(stiffness.above), speed, omega).coefficients
+            side = np.where(doubtful, (evaluated(by_omega, kappa) / slope).real, side)
+        frf = np.zeros((ahead.size, omega.size), complex)
+        for forward in (True, False):
+            here = (ahead >= 0) == forward
+            if here.any():
+                frf[here] = _one_side(kappa, weight, (side > 0) == forward, ahead[here])
+                if not forward:
+                    frf[here] *= -1.0
+    bad = ~np.isfinite(frf).all(axis=0)
+    if bad.any():
+        frequency = omega[bad.argmax()] / (2 * np.pi)
+        raise SolveError(
+            f"the moving FRF is infinite at {frequency.real:.6g} Hz and {speed:.6g} m/s: an undamped resonance"
+            " of the guideway, or values beyond floating-point range"
+        )
+    return frf
+
+
+def _by_omega(table: FloatArray) -> ComplexArray:
+    """Table of the derivative with respect to ω: that by p, times i."""
+    return 1j * table[:, 1:] * np.arange(1, table.shape[1])
+
+
+def _one_side(kappa: ComplexArray, weight: ComplexArray, chosen: BoolArray, ahead: FloatArray) -> ComplexArray:
+    """Sum the chosen waves at the given offsets; which ones they are may change from frequency to frequency."""
+    total = np.zeros((ahead.size, kappa.shape[1]), complex)
+    for wave, belongs in enumerate(chosen):
+        if not belongs.any():
+            continue
+        # Where a wave belongs to the other side it takes part with weight zero.
+        amplitude = np.where(belongs, weight[wave], 0.0)
+        exponent = np.where(belongs, 1j * kappa[wave], 0.0)
+        total += amplitude * np.exp(exponent * ahead[:, None])
+    return total

@@ -1,0 +1,40 @@
+"""From coupled spectra to histories."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from movingfrf.coupling import CoupledSpectra
+from movingfrf.spectral import Histories, SpectralGrid
+
+
+class Response(NamedTuple):
+    """Histories of what the roughness adds to the steady state."""
+
+    force: Histories
+    deflection: Histories
+    motion: Histories
+    acceleration: Histories
+
+
+def histories(spectra: CoupledSpectra, grid: SpectralGrid) -> Response:
+    """Transform coupled spectra to time.
+
+    Parameters
+    ----------
+    spectra : CoupledSpectra
+        What `couple` returned.
+    grid : SpectralGrid
+        The grid they were computed on.
+
+    Returns
+    -------
+    Response
+        Dynamic force [N], deflection [m], motion [m or rad] and acceleration [m/s² or rad/s²].
+    """
+    return Response(
+        grid.to_histories(spectra.force),
+        grid.to_histories(spectra.deflection),
+        grid.to_histories(spectra.motion),
+        grid.to_histories(spectra.motion, derivative=2),
+    )

@@ -1,0 +1,1 @@
+"""Roughness: spectra, profiles, and what a contact sees of them."""

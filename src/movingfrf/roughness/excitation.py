@@ -1,0 +1,93 @@
+"""What each contact sees of a profile while it travels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._checks import FloatArray
+from movingfrf.roughness.profiles import Profile
+from movingfrf.spectral import smooth_step
+
+# Relative slack in the comparison of two lengths that were computed in different ways.
+SLACK = 1e-9
+
+
+class Excitation(NamedTuple):
+    """Elevation under each contact over time, and the datum that was subtracted."""
+
+    roughness: FloatArray  # (time, contact) [m]
+    datum: float  # [m]
+
+
+def excite(
+    profile: Profile,
+    positions: FloatArray,
+    paths: Sequence[int],
+    *,
+    speed: float,
+    samples: int,
+    time_step: float,
+    start: float,
+    blend: float,
+) -> Excitation:
+    """Sample the profile under each contact, at the contact's own position.
+
+    The elevation at the foremost contact's start is the datum. Up to that point the road counts as flat and
+    within `blend` metres after it the profile sets in, so that every contact meets one and the same road.
+
+    Parameters
+    ----------
+    profile : Profile
+        The road.
+    positions : ndarray, shape (contact,)
+        Contacts ahead of the vehicle's reference point [m].
+    paths : sequence of int, length contact
+        Path of the profile that each contact follows.
+    speed : float
+        Speed [m/s].
+    samples : int
+        Number of samples in time.
+    time_step : float
+        Step in time [s].
+    start : float
+        Distance of the reference point at t = 0 [m].
+    blend : float
+        Length over which the profile sets in [m]; 0 leaves the profile as it is.
+
+    Returns
+    -------
+    Excitation
+        Roughness [m], positive up, and its datum [m].
+
+    Raises
+    ------
+    ValueError
+        If the profile does not cover the journey or lacks a path.
+    """
+    first, foremost = start + positions.min(), start + positions.max()
+    last = foremost + speed * time_step * samples
+    stations = profile.stations
+    slack = SLACK * (1 + abs(last))
+    if stations[0] > first + slack or stations[-1] < last - slack:
+        raise ValueError(
+            f"the profile must cover the journey from {first:.6g} m to {last:.6g} m, "
+            f"but it reaches from {stations[0]:.6g} m to {stations[-1]:.6g} m"
+        )
+    if max(paths) >= profile.paths:
+        raise ValueError(f"a contact follows path {max(paths)}, but the profile has {profile.paths} path(s)")
+    elevation = {path: profile.along(path) for path in set(paths)}
+    datum = float(elevation[paths[int(positions.argmax())]](np.array(foremost)))
+    roughness = np.empty((len(paths), samples))
+    travelled = speed * time_step * np.arange(samples)
+    for contact, (position, path) in enumerate(zip(positions, paths, strict=True)):
+        distance = travelled + (start + position)
+        seen = elevation[path](distance)
+        seen -= datum
+        if blend:
+            blending = int(np.searchsorted(distance, foremost + blend))
+            seen[:blending] *= smooth_step((distance[:blending] - foremost) / blend)
+        roughness[contact] = seen
+    return Excitation(roughness.T, datum)

@@ -1,0 +1,205 @@
+"""Roughness spectra: one-sided, over spatial frequency in cycles per metre."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from movingfrf._checks import FloatArray, checking
+
+# Spatial frequency at which ISO 8608 states the roughness [cycle/m].
+REFERENCE_FREQUENCY = 0.1
+
+# Geometric class centres of ISO 8608 at 0.1 cycle/m [m³]; the limits between classes are twice these.
+CLASS_CENTRES = {letter: 16e-6 * 4.0**n for n, letter in enumerate("ABCDEFGH")}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IsoRoad:
+    """Roughness spectrum of ISO 8608, G_d(n) = G_d(n₀) (n/n₀)^−w with n₀ = 0.1 cycle/m.
+
+    Parameters
+    ----------
+    roughness : float
+        Displacement spectral density G_d(n₀) [m³].
+    waviness : float
+        Exponent w; 2 in the standard.
+    band : tuple of float
+        Lowest and highest spatial frequency with content [cycle/m].
+
+    Raises
+    ------
+    ValueError
+        If the roughness is not positive, or the band is not two increasing positive frequencies.
+
+    References
+    ----------
+    ISO 8608:2016, Mechanical vibration: road surface profiles, reporting of measured data.
+
+    Examples
+    --------
+    >>> IsoRoad.of_class("A").roughness
+    1.6e-05
+    >>> IsoRoad(roughness=16e-6).density(np.array([0.1, 1.0])).tolist()
+    [1.6e-05, 1.6e-07]
+    """
+
+    roughness: float
+    waviness: float = 2.0
+    band: tuple[float, float] = (0.01, 10.0)
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        with checking() as check:
+            check.positive("roughness", self.roughness, "m³")
+            check.finite("waviness", self.waviness, "1")
+            low, high = check.pair("band", self.band, "cycle/m")
+            if low >= high:
+                check.refuse("band", f"must be two increasing frequencies, got {self.band!r} cycle/m")
+        object.__setattr__(self, "band", (low, high))
+
+    @classmethod
+    def of_class(cls, letter: str, *, waviness: float = 2.0, band: tuple[float, float] = (0.01, 10.0)) -> IsoRoad:
+        """Road of an ISO 8608 class, at the class's geometric centre.
+
+        Parameters
+        ----------
+        letter : str
+            Class, A (smooth) to H (rough).
+        waviness : float
+            Exponent w.
+        band : tuple of float
+            Lowest and highest spatial frequency with content [cycle/m].
+
+        Returns
+        -------
+        IsoRoad
+            The spectrum.
+
+        Raises
+        ------
+        ValueError
+            If there is no such class.
+        """
+        with checking() as check:
+            if not isinstance(letter, str) or letter.upper() not in CLASS_CENTRES:
+                check.refuse("road_class", f"must be one of {', '.join(CLASS_CENTRES)}, got {letter!r}")
+        return cls(roughness=CLASS_CENTRES[letter.upper()], waviness=waviness, band=band)
+
+    def density(self, spatial_frequency: FloatArray) -> FloatArray:
+        """One-sided spectral density of the elevation, zero outside the band.
+
+        Parameters
+        ----------
+        spatial_frequency : ndarray
+            Spatial frequency [cycle/m].
+
+        Returns
+        -------
+        ndarray
+            G_d [m³].
+        """
+        inside = (spatial_frequency >= self.band[0]) & (spatial_frequency <= self.band[1])
+        ratio = np.where(inside, spatial_frequency, REFERENCE_FREQUENCY) / REFERENCE_FREQUENCY
+        return np.where(inside, self.roughness * ratio**-self.waviness, 0.0)
+
+    def variance_below(self, spatial_frequency: FloatArray) -> FloatArray:
+        """Variance of the elevation from the lower end of the band up to a spatial frequency.
+
+        Parameters
+        ----------
+        spatial_frequency : ndarray
+            Spatial frequency [cycle/m].
+
+        Returns
+        -------
+        ndarray
+            ∫ G_d dn [m²].
+        """
+        low = self.band[0]
+        n = np.clip(spatial_frequency, low, self.band[1])
+        power = 1 - self.waviness
+        scale = self.roughness * REFERENCE_FREQUENCY**self.waviness
+        if power == 0:
+            return scale * np.log(n / low)
+        return scale * (n**power - low**power) / power
+
+
+def iso_class(roughness: float) -> str:
+    """Class of ISO 8608 that a roughness at 0.1 cycle/m falls into.
+
+    Parameters
+    ----------
+    roughness : float
+        G_d(n₀) [m³].
+
+    Returns
+    -------
+    str
+        A to H; rougher roads than H are H.
+
+    Examples
+    --------
+    >>> iso_class(31e-6), iso_class(33e-6)
+    ('A', 'B')
+    """
+    return next((letter for letter, centre in CLASS_CENTRES.items() if roughness < 2 * centre), "H")
+
+
+def welch(elevation: FloatArray, step: float, *, segments: int = 8) -> tuple[FloatArray, FloatArray]:
+    """Estimate the one-sided spectrum of a uniformly sampled profile (Welch, Hann window, half overlap).
+
+    Parameters
+    ----------
+    elevation : ndarray, shape (distance,)
+        Elevation [m].
+    step : float
+        Distance between samples [m].
+    segments : int
+        Number of half-overlapping segments that the profile is cut into; each is freed of its linear trend.
+
+    Returns
+    -------
+    spatial_frequency : ndarray
+        Spatial frequency [cycle/m], without zero.
+    density : ndarray
+        Spectral density [m³].
+    """
+    from scipy.signal import welch as scipy_welch
+
+    length = max(2 * len(elevation) // (segments + 1), 8)
+    n, density = scipy_welch(elevation, 1 / step, nperseg=min(length, len(elevation)), detrend="linear")
+    return n[1:], density[1:]
+
+
+def fit_iso(spatial_frequency: FloatArray, density: FloatArray) -> tuple[float, float]:
+    """Fit roughness and waviness to an estimated spectrum, octave by octave.
+
+    The mean density of each octave (of frequency, as ISO 8608 smooths) enters a straight line in logarithms,
+    over 0.011–2.83 cycle/m as the standard says, or the part of it that the estimate covers.
+
+    Parameters
+    ----------
+    spatial_frequency : ndarray
+        Spatial frequency [cycle/m].
+    density : ndarray
+        Spectral density [m³].
+
+    Returns
+    -------
+    roughness : float
+        G_d at 0.1 cycle/m [m³].
+    waviness : float
+        Exponent w.
+    """
+    edges = 2.0 ** (np.arange(-13, 4) / 2)
+    edges = edges[(edges >= 0.011 / 1.05) & (edges <= 2.83 * 1.05)]
+    band = np.digitize(spatial_frequency, edges)
+    used = [b for b in range(1, edges.size) if (band == b).any() and density[band == b].mean() > 0]
+    if len(used) < 2:
+        return float("nan"), float("nan")
+    log_n = np.array([np.log(spatial_frequency[band == b]).mean() for b in used])
+    log_density = np.array([np.log(density[band == b].mean()) for b in used])
+    slope, level = np.polyfit(log_n - np.log(REFERENCE_FREQUENCY), log_density, 1)
+    return float(np.exp(level)), float(-slope)

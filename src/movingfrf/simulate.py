@@ -1,0 +1,315 @@
+"""The calls that most users need: a vehicle on a rough road, and prescribed loads on a road."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import movingfrf.findings as find
+from movingfrf._checks import checking, require_memory
+from movingfrf.coupling import CHUNK, Progress, couple, silent, steady_state
+from movingfrf.guideways.base import Guideway
+from movingfrf.response import histories
+from movingfrf.roughness.excitation import excite
+from movingfrf.roughness.profiles import Profile
+from movingfrf.schema import COUPLED, LOADED, labelled
+from movingfrf.spectral import SpectralGrid
+from movingfrf.stability import require_stable
+from movingfrf.truncation import first_negligible, influence, truncation_error
+from movingfrf.vehicles.base import Vehicle
+from movingfrf.version import VERSION
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# Longest time that the padding is extended by for a vehicle that is slow to settle [s], and how far its slowest
+# vibration should have decayed by then.
+LONGEST_SETTLING, SETTLED = 60.0, 1e-2
+
+# Bytes per sample and channel (a contact or a degree of freedom) at the peak of a computation, measured.
+BYTES_PER_SAMPLE = 75
+
+
+def simulate(
+    guideway: Guideway,
+    vehicle: Vehicle,
+    profile: Profile,
+    *,
+    speed: float,
+    duration: float,
+    start: float = 0.0,
+    time_step: float = 1e-3,
+    truncation: float | None = None,
+    blend: float = 5.0,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Drive a vehicle over a rough road and return what both do.
+
+    The vehicle comes from steady travel on a smooth road. From the start of its foremost contact on, the
+    profile sets in.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    vehicle : Vehicle
+        The vehicle.
+    profile : Profile
+        Elevation of the road; must cover the journey of every contact.
+    speed : float
+        Speed [m/s].
+    duration : float
+        Duration [s].
+    start : float
+        Distance of the vehicle's reference point at t = 0 [m].
+    time_step : float
+        Step in time [s].
+    truncation : float, optional
+        Frequency beyond which the road counts as rigid [Hz]. None: the lowest one beyond which a rigid road
+        changes no output by more than 1e-6 (relative L2), found and recorded.
+    blend : float
+        Length over which the profile sets in [m]; 0 leaves it as it is.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        `contact_force`, `static_load`, `deflection`, `static_deflection`, `motion`, `acceleration` and
+        `roughness`; the settings, and findings about the validity of the result, in its attributes.
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible, the profile does not cover the journey, or memory does not hold the result.
+    SolveError
+        If vehicle and guideway are unstable together, or a result is not finite.
+
+    Warns
+    -----
+    ValidityWarning
+        If contact would be lost, the speed is near or above critical, the response has not decayed, or there
+        is content beyond the truncation or the Nyquist frequency.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> road = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9),
+    ...                 mf.Spring(stiffness=8.0e6, damping=3.0e4))
+    >>> car = mf.quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                      suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> hump = mf.bump(height=0.02, width=1.0, at=5.0, length=30.0)
+    >>> result = mf.simulate(road, car, hump, speed=10.0, duration=2.0, blend=0.0)
+    >>> dict(result.sizes)
+    {'time': 2000, 'contact': 1, 'dof': 2}
+    """
+    with checking() as check:
+        check.positive("speed", speed, "m/s")
+        check.positive("duration", duration, "s")
+        check.positive("time_step", time_step, "s")
+        check.finite("start", start, "m")
+        check.not_negative("blend", blend, "m")
+        if truncation is not None:
+            check.not_negative("truncation", truncation, "Hz")
+        if not check.faults and round(duration / time_step) < 2:
+            check.refuse("duration", f"must be at least two time steps of {time_step:g} s, got {duration:g} s")
+    samples = round(duration / time_step)
+    channels = len(vehicle.contacts) + len(vehicle.dof_names)
+    require_memory(
+        BYTES_PER_SAMPLE * channels * samples, f"a journey of {duration:g} s in steps of {time_step:g} s"
+    )
+    grid = SpectralGrid(samples=samples, time_step=time_step, truncation=truncation, settling=_settling(vehicle))
+    progress("profile", 0.0)
+    excitation = excite(
+        profile,
+        vehicle.positions,
+        [contact.path for contact in vehicle.contacts],
+        speed=speed,
+        samples=samples,
+        time_step=time_step,
+        start=start,
+        blend=blend,
+    )
+    spectra = grid.to_spectra(excitation.roughness)
+    roughness = _averaged(vehicle, spectra, speed, grid)
+
+    progress("steady state", 0.0)
+    steady = steady_state(guideway, vehicle, speed)
+    require_stable(guideway, vehicle, speed)
+    part = influence(guideway, vehicle, roughness, speed=speed, grid=grid)
+    if truncation is None:
+        kept = first_negligible(part, roughness)
+        grid = replace(grid, truncation=max(kept - 1, 0) / (grid.padded * time_step))
+    error = truncation_error(part, grid.kept)
+
+    coupled = couple(guideway, vehicle, roughness, speed=speed, grid=grid, progress=progress)
+    progress("histories", 0.0)
+    response = histories(coupled, grid)
+    seen = excitation.roughness if roughness is spectra else grid.to_histories(roughness).values
+    found = [
+        *find.contact_lost(response.force.values + steady.load, time_step),
+        *find.near_critical(speed, guideway.critical_speed),
+        *find.not_decayed("vehicle's motion", response.motion.remainder, response.motion.values),
+        *find.beyond_truncation(grid.truncation or 0.0, error),
+        *find.beyond_nyquist(roughness, grid),
+    ]
+    deflection = response.deflection.values
+    deflection += steady.deflection
+    values = {
+        "time": grid.time,
+        "contact": np.arange(len(vehicle.contacts)),
+        "position": vehicle.positions,
+        "path": np.array([contact.path for contact in vehicle.contacts]),
+        "dof": np.array(vehicle.dof_names),
+        "dof_unit": np.where(np.asarray(vehicle.vertical) == 0, "rad", "m"),
+        "contact_force": response.force.values,
+        "static_load": steady.load,
+        "deflection": deflection,
+        "static_deflection": steady.deflection,
+        "motion": response.motion.values,
+        "acceleration": response.acceleration.values,
+        "roughness": seen,
+    }
+    attributes = {
+        **_provenance("Coupled response of a vehicle and a guideway"),
+        "speed": float(speed),
+        "duration": float(duration),
+        "start": float(start),
+        "time_step": float(time_step),
+        "truncation": float(grid.truncation or 0.0),
+        "truncation_error": error,
+        "blend": float(blend),
+        "datum": excitation.datum,
+        "critical_speed": float(guideway.critical_speed),
+        "guideway": repr(guideway),
+        "findings": find.announced(found),
+    }
+    return labelled(values, COUPLED, attributes)
+
+
+def moving_loads(
+    guideway: Guideway,
+    force: ArrayLike,
+    positions: ArrayLike,
+    *,
+    speed: float,
+    time_step: float = 1e-3,
+    observe: ArrayLike | None = None,
+    truncation: float | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Deflection of a road under prescribed forces that travel along it, from rest at t = 0.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    force : array_like, shape (time, load)
+        Forces [N], positive down. A force that is not zero at t = 0 is switched on at that instant.
+    positions : array_like, shape (load,)
+        Where the forces act, in the frame that travels with them [m], positive ahead.
+    speed : float
+        Common speed [m/s].
+    time_step : float
+        Step in time [s].
+    observe : array_like, shape (point,), optional
+        Observation points in the same frame [m]; the loads' own by default.
+    truncation : float, optional
+        Frequency beyond which the response is left out [Hz]; None leaves nothing out.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        `deflection` (time, point) [m] and `force` (time, load) [N].
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible, shapes disagree, or memory does not hold the result.
+    SolveError
+        If a result is not finite.
+
+    Warns
+    -----
+    ValidityWarning
+        If the speed is near or above critical, or the response has not decayed.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> road = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9),
+    ...                 mf.Spring(stiffness=8.0e6, damping=3.0e4))
+    >>> result = mf.moving_loads(road, np.full((2000, 1), 1e5), [0.0], speed=10.0)
+    >>> round(1e3 * result.deflection[-1, 0].item(), 3)  # mm
+    3.737
+    """
+    with checking() as check:
+        at = check.array("positions", positions, "m", (None,))
+        forces = check.array("force", force, "N", (None, at.size))
+        points = at if observe is None else check.array("observe", observe, "m", (None,))
+        check.finite("speed", speed, "m/s")
+        check.positive("time_step", time_step, "s")
+        if truncation is not None:
+            check.not_negative("truncation", truncation, "Hz")
+        if not check.faults and (len(forces) < 2 or not at.size or not points.size):
+            check.refuse("force", "must have at least two samples, one load and one observation point")
+    require_memory(BYTES_PER_SAMPLE * (at.size + points.size) * len(forces), f"a record of {len(forces)} samples")
+    grid = SpectralGrid(samples=len(forces), time_step=time_step, truncation=truncation)
+    spectra = grid.to_spectra(forces)
+    deflection = np.empty((points.size, grid.kept), complex).T
+    for first in range(0, grid.kept, CHUNK):
+        last = min(first + CHUNK, grid.kept)
+        frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(slice(first, last)))
+        deflection[first:last] = (frf @ spectra[first:last, :, None])[:, :, 0]
+        progress("moving FRF", last / grid.kept)
+    progress("histories", 0.0)
+    response = grid.to_histories(deflection)
+    found = [
+        *find.near_critical(abs(speed), guideway.critical_speed),
+        *find.not_decayed("deflection", response.remainder, response.values),
+    ]
+    values = {
+        "time": grid.time,
+        "load": at,
+        "point": points,
+        "force": forces,
+        "deflection": response.values,
+    }
+    attributes = {
+        **_provenance("Response of a guideway to prescribed moving loads"),
+        "speed": float(speed),
+        "time_step": float(time_step),
+        "truncation": 0.5 / time_step if truncation is None else float(truncation),
+        "critical_speed": float(guideway.critical_speed),
+        "guideway": repr(guideway),
+        "findings": find.announced(found),
+    }
+    return labelled(values, LOADED, attributes)
+
+
+def _settling(vehicle: Vehicle) -> float:
+    """Time until the vehicle's slowest vibration has decayed [s], within reason."""
+    slowest = float((-vehicle.poles.real).min())
+    return min(-np.log(SETTLED) / slowest, LONGEST_SETTLING) if slowest > 0 else LONGEST_SETTLING
+
+
+def _averaged(vehicle: Vehicle, spectra: np.ndarray, speed: float, grid: SpectralGrid) -> np.ndarray:
+    """Roughness averaged over each contact's footprint L: a factor sin(a)/a with a = ωL/2v."""
+    lengths = np.array([contact.footprint for contact in vehicle.contacts])
+    if not lengths.any():
+        return spectra
+    averaged = spectra.copy(order="K")
+    for contact in np.flatnonzero(lengths):
+        phase = grid.omega() * lengths[contact] / (2 * speed)
+        averaged[:, contact] *= np.sin(phase) / phase
+    return averaged
+
+
+def _provenance(title: str) -> dict[str, str | float | int]:
+
+    return {"title": title, "movingfrf": VERSION}

@@ -1,0 +1,1 @@
+"""Vehicles, and the functions that fill them."""

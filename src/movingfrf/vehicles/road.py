@@ -1,0 +1,155 @@
+"""Road vehicles: functions that fill a `Vehicle`."""
+
+from __future__ import annotations
+
+from movingfrf._checks import checking
+from movingfrf.vehicles.base import Contact, Vehicle
+
+
+def quarter_car(
+    *,
+    body_mass: float,
+    wheel_mass: float,
+    suspension_stiffness: float,
+    suspension_damping: float,
+    tyre_stiffness: float,
+    tyre_damping: float = 0.0,
+    footprint: float = 0.0,
+) -> Vehicle:
+    """One wheel and its share of the body: degrees of freedom `body`, `wheel`.
+
+    Parameters
+    ----------
+    body_mass, wheel_mass : float
+        Sprung and unsprung mass [kg].
+    suspension_stiffness, tyre_stiffness : float
+        Stiffness [N/m].
+    suspension_damping, tyre_damping : float
+        Damping [N s/m].
+    footprint : float
+        Length of the tyre's contact patch [m].
+
+    Returns
+    -------
+    Vehicle
+        With its contact at position 0.
+
+    Raises
+    ------
+    ValueError
+        If a mass or stiffness is not positive or a damping is negative.
+
+    Examples
+    --------
+    >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> car.natural_frequencies.round(2).tolist()
+    [1.06, 11.89]
+    """
+    with checking() as check:
+        check.positive("body_mass", body_mass, "kg")
+        check.positive("wheel_mass", wheel_mass, "kg")
+        check.positive("suspension_stiffness", suspension_stiffness, "N/m")
+        check.not_negative("suspension_damping", suspension_damping, "N s/m")
+        check.positive("tyre_stiffness", tyre_stiffness, "N/m")
+        check.not_negative("tyre_damping", tyre_damping, "N s/m")
+        check.not_negative("footprint", footprint, "m")
+    k, c = suspension_stiffness, suspension_damping
+    return Vehicle(
+        mass=[[body_mass, 0], [0, wheel_mass]],
+        damping=[[c, -c], [-c, c]],
+        stiffness=[[k, -k], [-k, k]],
+        contact_map=[[0, 1]],
+        contacts=[Contact(position=0.0, stiffness=tyre_stiffness, damping=tyre_damping, footprint=footprint)],
+        vertical=[1, 1],
+        dof_names=["body", "wheel"],
+    )
+
+
+def half_car(
+    *,
+    body_mass: float,
+    pitch_inertia: float,
+    wheel_masses: tuple[float, float],
+    suspension_stiffness: tuple[float, float],
+    suspension_damping: tuple[float, float],
+    tyre_stiffness: tuple[float, float],
+    tyre_damping: tuple[float, float] = (0.0, 0.0),
+    axles: tuple[float, float],
+    footprint: float = 0.0,
+) -> Vehicle:
+    """Two axles in one vertical plane: degrees of freedom `bounce`, `pitch`, `front_wheel`, `rear_wheel`.
+
+    Pairs are (front, rear). Bounce is that of the centre of mass, positive down; pitch is positive nose down.
+
+    Parameters
+    ----------
+    body_mass : float
+        Sprung mass [kg].
+    pitch_inertia : float
+        Moment of inertia of the sprung mass about its centre of mass [kg m²].
+    wheel_masses : tuple of float
+        Unsprung masses [kg].
+    suspension_stiffness, tyre_stiffness : tuple of float
+        Stiffness per axle [N/m].
+    suspension_damping, tyre_damping : tuple of float
+        Damping per axle [N s/m].
+    axles : tuple of float
+        Positions ahead of the centre of mass [m]: (+a, −b).
+    footprint : float
+        Length of a tyre's contact patch [m].
+
+    Returns
+    -------
+    Vehicle
+        With its contacts at `axles`.
+
+    Raises
+    ------
+    ValueError
+        If a mass or stiffness is not positive, a damping is negative, or the front axle is not ahead of the
+        rear one.
+    """
+    with checking() as check:
+        check.positive("body_mass", body_mass, "kg")
+        check.positive("pitch_inertia", pitch_inertia, "kg m²")
+        wheels = check.pair("wheel_masses", wheel_masses, "kg")
+        (kf, kr) = check.pair("suspension_stiffness", suspension_stiffness, "N/m")
+        (cf, cr) = check.pair("suspension_damping", suspension_damping, "N s/m", positive=False)
+        tyres = check.pair("tyre_stiffness", tyre_stiffness, "N/m")
+        tyre_dampers = check.pair("tyre_damping", tyre_damping, "N s/m", positive=False)
+        check.not_negative("footprint", footprint, "m")
+        try:
+            front, rear = (check.finite(f"axles[{n}]", x, "m") for n, x in enumerate(axles))
+        except (TypeError, ValueError):
+            check.refuse("axles", f"must be two numbers (+a, −b) [m], got {axles!r}")
+        else:
+            if front <= rear:
+                check.refuse("axles", f"must have the front axle ahead of the rear one, got {axles!r} m")
+
+    def suspension(at_front: float, at_rear: float) -> list[list[float]]:
+        bounce_pitch = at_front * front + at_rear * rear
+        return [
+            [at_front + at_rear, bounce_pitch, -at_front, -at_rear],
+            [bounce_pitch, at_front * front**2 + at_rear * rear**2, -at_front * front, -at_rear * rear],
+            [-at_front, -at_front * front, at_front, 0],
+            [-at_rear, -at_rear * rear, 0, at_rear],
+        ]
+
+    return Vehicle(
+        mass=[
+            [body_mass, 0, 0, 0],
+            [0, pitch_inertia, 0, 0],
+            [0, 0, wheels[0], 0],
+            [0, 0, 0, wheels[1]],
+        ],
+        damping=suspension(cf, cr),
+        stiffness=suspension(kf, kr),
+        contact_map=[[0, 0, 1, 0], [0, 0, 0, 1]],
+        contacts=[
+            Contact(position=position, stiffness=stiffness, damping=damping, footprint=footprint)
+            for position, stiffness, damping in zip((front, rear), tyres, tyre_dampers, strict=True)
+        ],
+        vertical=[1, 0, 1, 1],
+        dof_names=["bounce", "pitch", "front_wheel", "rear_wheel"],
+    )
