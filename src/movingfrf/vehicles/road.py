@@ -44,7 +44,7 @@ def quarter_car(
     >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
     ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
     >>> car.natural_frequencies.round(2).tolist()
-    [1.06, 11.89]
+    [1.08, 11.68]
     """
     with checking() as check:
         check.positive("body_mass", body_mass, "kg")
