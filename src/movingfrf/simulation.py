@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,6 +31,72 @@ LONGEST_SETTLING, SETTLED = 60.0, 1e-2
 
 # Bytes per sample and channel (a contact or a degree of freedom) at the peak of a computation, measured.
 BYTES_PER_SAMPLE = 75
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Journey:
+    """How a vehicle travels and in what steps it is observed.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [m/s].
+    duration : float
+        Duration [s].
+    start : float
+        Distance of the vehicle's reference point at t = 0 [m].
+    time_step : float
+        Step in time [s].
+    truncation : float, optional
+        Frequency beyond which the road counts as rigid [Hz].
+    blend : float
+        Length over which the profile sets in [m].
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible.
+    """
+
+    speed: float
+    duration: float
+    start: float = 0.0
+    time_step: float = 1e-3
+    truncation: float | None = None
+    blend: float = 5.0
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        with checking() as check:
+            check.positive("speed", self.speed, "m/s")
+            check.positive("duration", self.duration, "s")
+            check.positive("time_step", self.time_step, "s")
+            check.finite("start", self.start, "m")
+            check.not_negative("blend", self.blend, "m")
+            if self.truncation is not None:
+                check.not_negative("truncation", self.truncation, "Hz")
+            if not check.faults and self.samples < 2:
+                check.refuse(
+                    "duration", f"must be at least two time steps of {self.time_step:g} s, got {self.duration:g} s"
+                )
+
+    @property
+    def samples(self) -> int:
+        """Number of time steps."""
+        return round(self.duration / self.time_step)
+
+    def interval(self, vehicle: Vehicle) -> tuple[float, float]:
+        """First and last distance that a contact meets [m]."""
+        positions = self.start + vehicle.positions
+        return float(positions.min()), float(positions.max()) + self.speed * self.time_step * self.samples
+
+    def require_memory(self, vehicle: Vehicle) -> None:
+        """Refuse a journey whose result memory would not hold."""
+        channels = len(vehicle.contacts) + len(vehicle.dof_names)
+        require_memory(
+            BYTES_PER_SAMPLE * channels * self.samples,
+            f"a journey of {self.duration:g} s in steps of {self.time_step:g} s",
+        )
 
 
 def simulate(
@@ -106,21 +172,11 @@ def simulate(
     >>> dict(result.sizes)
     {'time': 2000, 'contact': 1, 'dof': 2}
     """
-    with checking() as check:
-        check.positive("speed", speed, "m/s")
-        check.positive("duration", duration, "s")
-        check.positive("time_step", time_step, "s")
-        check.finite("start", start, "m")
-        check.not_negative("blend", blend, "m")
-        if truncation is not None:
-            check.not_negative("truncation", truncation, "Hz")
-        if not check.faults and round(duration / time_step) < 2:
-            check.refuse("duration", f"must be at least two time steps of {time_step:g} s, got {duration:g} s")
-    samples = round(duration / time_step)
-    channels = len(vehicle.contacts) + len(vehicle.dof_names)
-    require_memory(
-        BYTES_PER_SAMPLE * channels * samples, f"a journey of {duration:g} s in steps of {time_step:g} s"
+    journey = Journey(
+        speed=speed, duration=duration, start=start, time_step=time_step, truncation=truncation, blend=blend
     )
+    journey.require_memory(vehicle)
+    samples = journey.samples
     grid = SpectralGrid(samples=samples, time_step=time_step, truncation=truncation, settling=_settling(vehicle))
     progress("profile", 0.0)
     excitation = excite(

@@ -67,17 +67,8 @@ def excite(
     ValueError
         If the profile does not cover the journey or lacks a path.
     """
-    first, foremost = start + positions.min(), start + positions.max()
-    last = foremost + speed * time_step * samples
-    stations = profile.stations
-    slack = SLACK * (1 + abs(last))
-    if stations[0] > first + slack or stations[-1] < last - slack:
-        raise ValueError(
-            f"the profile must cover the journey from {first:.6g} m to {last:.6g} m, "
-            f"but it reaches from {stations[0]:.6g} m to {stations[-1]:.6g} m"
-        )
-    if max(paths) >= profile.paths:
-        raise ValueError(f"a contact follows path {max(paths)}, but the profile has {profile.paths} path(s)")
+    foremost = start + positions.max()
+    require_cover(profile, start + positions.min(), foremost + speed * time_step * samples, paths)
     elevation = {path: profile.along(path) for path in set(paths)}
     datum = float(elevation[paths[int(positions.argmax())]](np.array(foremost)))
     roughness = np.empty((len(paths), samples))
@@ -91,3 +82,31 @@ def excite(
             seen[:blending] *= smooth_step((distance[:blending] - foremost) / blend)
         roughness[contact] = seen
     return Excitation(roughness.T, datum)
+
+
+def require_cover(profile: Profile, first: float, last: float, paths: Sequence[int]) -> None:
+    """Refuse a profile that is shorter than the journey, or lacks a path that a contact follows.
+
+    Parameters
+    ----------
+    profile : Profile
+        The road.
+    first, last : float
+        First and last distance that a contact meets [m].
+    paths : sequence of int
+        Paths that the contacts follow.
+
+    Raises
+    ------
+    ValueError
+        With both intervals, or with the missing path.
+    """
+    stations = profile.stations
+    slack = SLACK * (1 + abs(last))
+    if stations[0] > first + slack or stations[-1] < last - slack:
+        raise ValueError(
+            f"the profile must cover the journey from {first:.6g} m to {last:.6g} m, "
+            f"but it reaches from {stations[0]:.6g} m to {stations[-1]:.6g} m"
+        )
+    if max(paths) >= profile.paths:
+        raise ValueError(f"a contact follows path {max(paths)}, but the profile has {profile.paths} path(s)")

@@ -162,7 +162,7 @@ def welch(elevation: FloatArray, step: float, *, segments: int = 8) -> tuple[Flo
     Returns
     -------
     spatial_frequency : ndarray
-        Spatial frequency [cycle/m], without zero.
+        Spatial frequency [cycle/m], without the lowest three lines: trend and window have taken from them.
     density : ndarray
         Spectral density [m³].
     """
@@ -170,7 +170,7 @@ def welch(elevation: FloatArray, step: float, *, segments: int = 8) -> tuple[Flo
 
     length = max(2 * len(elevation) // (segments + 1), 8)
     n, density = scipy_welch(elevation, 1 / step, nperseg=min(length, len(elevation)), detrend="linear")
-    return n[1:], density[1:]
+    return n[3:], density[3:]
 
 
 def fit_iso(spatial_frequency: FloatArray, density: FloatArray) -> tuple[float, float]:

@@ -1,0 +1,233 @@
+"""The command `movingfrf`."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+import warnings
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import App, CycloptsError, Parameter
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from movingfrf._checks import SolveError, ValidityWarning
+from movingfrf.version import VERSION
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from movingfrf.metrics.basic import Measure
+
+# Exit statuses.
+DONE, DEFECT, REFUSED, INTERRUPTED = 0, 1, 2, 130
+
+# A computation shorter than this shows no progress [s].
+PATIENCE = 1.0
+
+app = App(
+    name="movingfrf",
+    version=VERSION,
+    help="""How vehicles and roads shake each other, computed in the frequency domain.
+
+    A scenario file says which vehicle drives over which road, and how rough it is:
+
+    1. movingfrf new truck.toml writes one to start from, with a comment and a unit on every line.
+
+    2. movingfrf check truck.toml says what it describes: natural frequencies, critical speed, roughness class.
+
+    3. movingfrf run truck.toml --output out/truck solves it and writes result.nc (netCDF: xarray, MATLAB, ...),
+    summary.json and report.html.
+
+    Exit status: 0 done, 2 refused (a file, a value, a case without an answer), 130 interrupted, 1 a defect.""",
+)
+
+
+@app.command
+def new(file: Path | None = None, /, *, force: bool = False) -> None:
+    """Write a commented scenario to start from: a half truck on a class A road.
+
+    Parameters
+    ----------
+    file
+        The file to write; without it the scenario goes to standard output.
+    force
+        Replace the file if it exists and differs.
+    """
+    text = files("movingfrf").joinpath("templates", "scenario.toml").read_text(encoding="utf-8")
+    if file is None:
+        sys.stdout.write(text)
+        return
+    if file.exists() and not force and file.read_text(encoding="utf-8", errors="replace") != text:
+        raise ValueError(f"{file} exists and differs; choose another name, or --force to replace it")
+    file.write_text(text, encoding="utf-8")
+    Console().print(f"wrote {file}", highlight=False, soft_wrap=True)
+
+
+@app.command
+def check(file: Path, /) -> None:
+    """Check a scenario and say what it describes, without solving it.
+
+    Parameters
+    ----------
+    file
+        The scenario.
+    """
+    from movingfrf.describe import described
+    from movingfrf.scenario import read_scenario
+
+    scenario = read_scenario(file)
+    console = Console(highlight=False)
+    for heading, lines in described(scenario):
+        table = Table(title=heading, title_justify="left", title_style="bold", show_header=False, box=None)
+        for name, value in lines:
+            table.add_row(name, value)
+        console.print(table)
+    console.print(f"{file}: in order", soft_wrap=True)
+
+
+@app.command
+def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] = None) -> None:
+    """Solve a scenario; write result.nc, summary.json and report.html.
+
+    The three files appear together when everything is done; an earlier result stays until then, and stays if
+    the run fails. Other files in the folder are left alone.
+
+    Parameters
+    ----------
+    file
+        The scenario.
+    output
+        The folder to write into; out/NAME beside the scenario by default.
+    """
+    from movingfrf.metrics.basic import measures
+    from movingfrf.output import replacing, save, summary
+    from movingfrf.report import render
+    from movingfrf.scenario import read_scenario
+
+    console = Console(highlight=False)
+    stages = _Stages()
+    with stages:
+        stages.report("scenario", 0.0)
+        scenario = read_scenario(file)
+        folder = output if output is not None else file.parent / "out" / scenario.name
+        with replacing(folder) as temporary, warnings.catch_warnings():
+            # Findings are printed with the results; no need to warn of them as well.
+            warnings.simplefilter("ignore", ValidityWarning)
+            result = scenario.run(stages.report)
+            stages.report("measures", 0.0)
+            found = measures(result)
+            stages.report("result.nc", 0.0)
+            save(result, temporary / "result.nc")
+            (temporary / "summary.json").write_text(summary(result, found), encoding="utf-8")
+            stages.report("report.html", 0.0)
+            page = render(result, guideway=scenario.guideway, scenario_text=scenario.text, title=scenario.name)
+            (temporary / "report.html").write_text(page, encoding="utf-8")
+    _print_result(console, result, found)
+    console.print(stages.table())
+    for name in ("report.html", "result.nc", "summary.json"):
+        console.print(f"wrote {folder / name}", soft_wrap=True)
+
+
+class _Stages:
+    """Shows which stage a computation is in, if it takes long, and remembers how long each took."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self._began = self._since = time.perf_counter()
+        self._stage = ""
+        self._display = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TimeElapsedColumn(),
+            console=Console(stderr=True),
+            transient=True,
+        )
+        self._task = self._display.add_task("", total=1.0)
+
+    def __enter__(self) -> _Stages:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.report("", 1.0)
+        if self._display.live.is_started:
+            self._display.stop()
+
+    def report(self, stage: str, fraction: float) -> None:
+        """Note that a stage has got so far."""
+        now = time.perf_counter()
+        if stage != self._stage:
+            if self._stage:
+                self.seconds[self._stage] = self.seconds.get(self._stage, 0.0) + now - self._since
+            self._stage, self._since = stage, now
+        if now - self._began > PATIENCE and stage and not self._display.live.is_started:
+            self._display.start()
+        self._display.update(self._task, description=stage, completed=fraction)
+
+    def table(self) -> Table:
+        """Time of every stage."""
+        table = Table(title="Time", title_justify="left", title_style="bold", show_header=False, box=None)
+        for stage, seconds in self.seconds.items():
+            table.add_row(stage, f"{seconds:.3f} s")
+        return table
+
+
+def _print_result(console: Console, result: xr.Dataset, found: list[Measure]) -> None:
+    """Print measures, one line per quantity, and findings."""
+    table = Table(title="Measures", title_justify="left", title_style="bold", show_header=False, box=None)
+    for quantity in dict.fromkeys(measure.quantity for measure in found):
+        values = [
+            f"{m.name} {m.value:.4g}" + ("" if m.units == "1" else f" {m.units}")
+            for m in found
+            if m.quantity == quantity
+        ]
+        table.add_row(quantity, ", ".join(values))
+    console.print(table)
+    findings = json.loads(result.attrs["findings"])
+    console.print("Findings" if findings else "Findings: none", style="bold")
+    for finding in findings:
+        console.print(f"- {finding['message']}", soft_wrap=True, markup=False)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command and return its exit status.
+
+    Parameters
+    ----------
+    arguments : list of str, optional
+        What follows the command's name; that of the process by default.
+
+    Returns
+    -------
+    int
+        Exit status.
+    """
+    try:
+        app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+    except KeyboardInterrupt:
+        print("movingfrf: interrupted, nothing was written", file=sys.stderr)
+        return INTERRUPTED
+    except (CycloptsError, ValueError, SolveError) as error:
+        print(f"movingfrf: {error}", file=sys.stderr)
+        return REFUSED
+    except MemoryError:
+        print("movingfrf: the case does not fit into the memory of this machine", file=sys.stderr)
+        return REFUSED
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        print(f"movingfrf: {place}{error.strerror or error}", file=sys.stderr)
+        return REFUSED
+    return DONE
+
+
+def entry() -> None:
+    """Run the command as a process."""
+    sys.exit(main())
+
+
+if __name__ == "__main__":
+    entry()

@@ -1,0 +1,110 @@
+"""Results on disk: complete or not at all."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from movingfrf.metrics.basic import Measure
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@contextmanager
+def replacing(folder: Path) -> Iterator[Path]:
+    """Lend a temporary folder and move what was written there into `folder` at the end.
+
+    The temporary folder lies inside `folder`, so that a move is a renaming. If the block fails nothing is
+    moved, everything that stood in `folder` stands there still, and a folder made for this goes again.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the files shall appear; made if it does not exist.
+
+    Yields
+    ------
+    Path
+        An empty folder to write into.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be made or written.
+    """
+    missing = [parent for parent in (folder, *folder.parents) if not parent.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    done = False
+    try:
+        temporary = Path(tempfile.mkdtemp(prefix=".partial-", dir=folder))
+        try:
+            yield temporary
+            for file in sorted(temporary.iterdir()):
+                if (folder / file.name).is_dir():
+                    raise IsADirectoryError(f"{folder / file.name} is a folder")
+            for file in sorted(temporary.iterdir()):
+                os.replace(file, folder / file.name)
+            done = True
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
+    finally:
+        if not done:
+            for made in missing:
+                if made.is_dir() and not any(made.iterdir()):
+                    made.rmdir()
+
+
+def save(result: xr.Dataset, file: Path) -> None:
+    """Save a result as netCDF, which xarray, MATLAB and others open.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        Any result of the package.
+    file : Path
+        The file.
+    """
+    result.to_netcdf(file, engine="h5netcdf")
+
+
+def summary(result: xr.Dataset, found: list[Measure]) -> str:
+    """Summarise a result as JSON: settings, measures and findings.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        Any result of the package.
+    found : list of Measure
+        Its measures.
+
+    Returns
+    -------
+    str
+        JSON text; a number without a finite value is null.
+    """
+    settings: Mapping[str, Any] = {
+        key: value for key, value in result.attrs.items() if key not in ("findings", "scenario")
+    }
+    content = {
+        "settings": settings,
+        "measures": [measure._asdict() for measure in found],
+        "findings": json.loads(result.attrs["findings"]),
+    }
+    return json.dumps(_finite(content), indent=1, ensure_ascii=False) + "\n"
+
+
+def _finite(value: Any) -> Any:
+    """JSON knows no infinity."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,448 @@
+"""Scenario files: TOML in, checked objects out.
+
+The Python signatures are the schema. A table's `kind` names a function or class, its keys are the keyword
+arguments, and the checks are those that the function makes itself; a new kind is one line in `KINDS`.
+"""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from movingfrf import forces
+from movingfrf._checks import Fault, ParameterError, checking
+from movingfrf.coupling import Progress, silent
+from movingfrf.guideways.base import Guideway
+from movingfrf.guideways.rigid import RigidGuideway
+from movingfrf.guideways.track import EulerBernoulliBeam, OnMass, ShearLayer, Spring, TimoshenkoBeam, track
+from movingfrf.roughness import profiles
+from movingfrf.roughness.excitation import require_cover
+from movingfrf.roughness.profiles import Profile, realise
+from movingfrf.roughness.readers.columns import read_columns
+from movingfrf.roughness.spectra import IsoRoad, iso_class
+from movingfrf.simulation import Journey, moving_loads, simulate
+from movingfrf.vehicles.base import Contact, Vehicle
+from movingfrf.vehicles.road import half_car, quarter_car
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class ScenarioError(ValueError):
+    """A scenario file that is refused; `faults` lists everything that is wrong with it.
+
+    Parameters
+    ----------
+    source : str
+        The file.
+    faults : sequence of Fault
+        Key path and reason of each fault.
+    """
+
+    def __init__(self, source: str, faults: Sequence[Fault]) -> None:
+        self.faults = tuple(faults)
+        count = "1 fault" if len(self.faults) == 1 else f"{len(self.faults)} faults"
+        lines = [f"  {fault.name} {fault.message}".rstrip() for fault in self.faults]
+        super().__init__("\n".join([f"{source}: {count}", *lines]))
+
+
+class Road(NamedTuple):
+    """A profile and a sentence about where it comes from."""
+
+    profile: Profile
+    description: str
+
+
+class Loads(NamedTuple):
+    """Prescribed forces that travel along."""
+
+    positions: np.ndarray
+    histories: tuple[forces.History, ...]
+    observe: np.ndarray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Scenario:
+    """A checked scenario, ready to run: a vehicle on a road, or prescribed loads.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file, without its ending.
+    text : str
+        The scenario as it was written.
+    guideway : Guideway
+        The road or track.
+    journey : Journey
+        Speed, duration, steps.
+    vehicle : Vehicle, optional
+        The vehicle; None with prescribed loads.
+    road : Road, optional
+        The profile; None with prescribed loads.
+    loads : Loads, optional
+        The prescribed loads; None with a vehicle.
+    """
+
+    name: str
+    text: str
+    guideway: Guideway
+    journey: Journey
+    vehicle: Vehicle | None = None
+    road: Road | None = None
+    loads: Loads | None = None
+
+    def run(self, progress: Progress = silent) -> xr.Dataset:
+        """Compute the response.
+
+        Parameters
+        ----------
+        progress : callable
+            Called with the name of a stage and the fraction of it that is done.
+
+        Returns
+        -------
+        xarray.Dataset
+            What `simulate` or `moving_loads` returns, with the scenario's text in its attributes.
+
+        Raises
+        ------
+        SolveError
+            If the case has no meaningful answer.
+        """
+        journey = self.journey
+        if self.loads is not None:
+            time = np.arange(journey.samples) * journey.time_step
+            result = moving_loads(
+                self.guideway,
+                np.stack([history(time) for history in self.loads.histories], axis=1),
+                self.loads.positions,
+                speed=journey.speed,
+                time_step=journey.time_step,
+                observe=self.loads.observe,
+                truncation=journey.truncation,
+                progress=progress,
+            )
+        else:
+            assert self.vehicle is not None
+            assert self.road is not None
+            result = simulate(
+                self.guideway,
+                self.vehicle,
+                self.road.profile,
+                speed=journey.speed,
+                duration=journey.duration,
+                start=journey.start,
+                time_step=journey.time_step,
+                truncation=journey.truncation,
+                blend=journey.blend,
+                progress=progress,
+            )
+        return result.assign_attrs(scenario=self.text)
+
+
+def iso_road(
+    *,
+    interval: tuple[float, float],
+    roughness: float | None = None,
+    road_class: str | None = None,
+    waviness: float = 2.0,
+    band: tuple[float, float] = (0.01, 10.0),
+    step: float = 0.05,
+    seed: int = 0,
+) -> Road:
+    """Realise an ISO 8608 road, by class or by roughness, over the interval that the journey needs."""
+    if (roughness is None) == (road_class is None):
+        raise ValueError("needs either road_class, A to H, or roughness, in m³ at 0.1 cycle/m, and not both")
+    if road_class is not None:
+        spectrum = IsoRoad.of_class(road_class, waviness=waviness, band=band)
+    else:
+        assert roughness is not None
+        spectrum = IsoRoad(roughness=roughness, waviness=waviness, band=band)
+    first, last = interval
+    return Road(
+        realise(spectrum, length=last - first, step=step, seed=seed, start=first),
+        f"ISO 8608 class {iso_class(spectrum.roughness)}, {spectrum.roughness:g} m³ at 0.1 cycle/m, waviness "
+        f"{waviness:g}, {spectrum.band[0]:g} to {spectrum.band[1]:g} cycle/m, seed {seed}",
+    )
+
+
+def profile(*, interval: tuple[float, float], file: Path) -> Road:
+    """Read a measured profile from columns of station and elevation."""
+    return Road(*read_columns(file))
+
+
+def harmonic(*, interval: tuple[float, float], amplitude: float, wavelength: float, phase: float = 0.0) -> Road:
+    """One sine wave over the interval that the journey needs."""
+    first, last = interval
+    made = profiles.harmonic(
+        amplitude=amplitude, wavelength=wavelength, phase=phase, length=last - first, start=first
+    )
+    return Road(made, f"a sine wave of {amplitude:g} m amplitude and {wavelength:g} m length")
+
+
+def bump(*, interval: tuple[float, float], height: float, width: float, at: float) -> Road:
+    """One bump on a flat road over the interval that the journey needs."""
+    first, last = interval
+    made = profiles.bump(height=height, width=width, at=at, length=last - first, start=first)
+    return Road(made, f"a bump of {height:g} m height and {width:g} m length at {at:g} m")
+
+
+def passage(*, speed: float, duration: float, time_step: float = 1e-3, truncation: float | None = None) -> Journey:
+    """How prescribed loads travel: no vehicle, hence no profile to start on."""
+    return Journey(speed=speed, duration=duration, time_step=time_step, truncation=truncation)
+
+
+def loads(
+    *, positions: Sequence[float], force: Sequence[forces.History], observe: Sequence[float] | None = None
+) -> Loads:
+    """Prescribed loads: positions ahead of the reference point [m] and one force history for each."""
+    with checking() as check:
+        at = check.array("positions", positions, "m", (None,))
+        points = at if observe is None else check.array("observe", observe, "m", (None,))
+        if not check.faults and not (at.size and points.size):
+            check.refuse("positions", "must hold at least one position [m], as must observe")
+        if not check.faults and len(force) != at.size:
+            check.refuse("force", f"must stand once per position, {at.size} times, got {len(force)}")
+    return Loads(at, tuple(force), points)
+
+
+# Family → kind → what makes it. `kind` is the Python name in snake_case.
+KINDS: dict[str, dict[str, Callable[..., Any]]] = {
+    "guideway": {"track": track, "rigid_guideway": RigidGuideway},
+    "beam": {"euler_bernoulli_beam": EulerBernoulliBeam, "timoshenko_beam": TimoshenkoBeam},
+    "foundation": {"spring": Spring, "shear_layer": ShearLayer, "on_mass": OnMass},
+    "vehicle": {"half_car": half_car, "quarter_car": quarter_car, "vehicle": Vehicle},
+    "contact": {"contact": Contact},
+    "roughness": {"iso_road": iso_road, "profile": profile, "harmonic": harmonic, "bump": bump},
+    "journey": {"journey": Journey},
+    "passage": {"passage": passage},
+    "loads": {"loads": loads},
+    "force": {
+        "constant": forces.constant,
+        "harmonics": forces.harmonics,
+        "random_sum": forces.random_sum,
+        "tabulated": forces.tabulated,
+    },
+}
+
+# The kind that a table has if it does not say.
+DEFAULT_KIND = {
+    "guideway": "track",
+    "contact": "contact",
+    "journey": "journey",
+    "passage": "passage",
+    "loads": "loads",
+}
+
+# Arguments that are tables themselves, and those that are lists of tables, with their family.
+TABLES = {"beam": "beam", "foundation": "foundation", "above": "foundation", "below": "foundation"}
+TABLE_LISTS = {"contacts": "contact", "force": "force"}
+
+WITH_VEHICLE, WITH_LOADS = {"guideway", "vehicle", "roughness", "run"}, {"guideway", "loads", "run"}
+
+# Stands for a journey's interval where the journey itself is refused, so that the road is checked all the same.
+SOME_INTERVAL = (0.0, 1.0)
+
+
+def read_scenario(file: str | Path) -> Scenario:
+    """Read and check a scenario file.
+
+    Parameters
+    ----------
+    file : str or Path
+        The file; paths in it are relative to its folder.
+
+    Returns
+    -------
+    Scenario
+        Ready to run.
+
+    Raises
+    ------
+    ScenarioError
+        With everything that is wrong with the file.
+    """
+    path = Path(file)
+    try:
+        text = path.read_bytes().decode()
+    except OSError as error:
+        raise ScenarioError(str(path), [Fault("the file", f"cannot be read: {error.strerror or error}")]) from None
+    except UnicodeDecodeError:
+        raise ScenarioError(str(path), [Fault("the file", "is not a text file")]) from None
+    return parse_scenario(text, name=path.stem, source=str(path), folder=path.parent)
+
+
+def parse_scenario(
+    text: str, *, name: str = "scenario", source: str = "scenario", folder: str | Path = "."
+) -> Scenario:
+    """Check the text of a scenario.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    name : str
+        Name of the scenario.
+    source : str
+        Where the text comes from, for messages.
+    folder : str or Path
+        Folder to which paths in the text are relative.
+
+    Returns
+    -------
+    Scenario
+        Ready to run.
+
+    Raises
+    ------
+    ScenarioError
+        With everything that is wrong with the text.
+    """
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ScenarioError(source, [Fault("the text", f"is not TOML: {error}")]) from None
+    except RecursionError:
+        raise ScenarioError(source, [Fault("the text", "is nested too deeply")]) from None
+    if not tables:
+        raise ScenarioError(source, [Fault("the file", "is empty; `movingfrf new` writes one to start from")])
+    builder = _Builder(Path(folder))
+    scenario = builder.scenario(tables, name, text)
+    if builder.faults or scenario is None:
+        raise ScenarioError(source, builder.faults)
+    return scenario
+
+
+class _Builder:
+    """Turns tables into objects and collects what is wrong with them."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.faults: list[Fault] = []
+
+    def scenario(self, tables: dict[str, Any], name: str, text: str) -> Scenario | None:
+        """Build everything; None if that was not possible, with the reasons in `faults`."""
+        with_loads = "loads" in tables
+        wanted = WITH_LOADS if with_loads else WITH_VEHICLE
+        self._check_keys("", tables, wanted, wanted)
+        guideway = self._section(tables, "guideway", "guideway")
+        journey = self._section(tables, "run", "passage" if with_loads else "journey")
+        if with_loads:
+            found = self._section(tables, "loads", "loads")
+            if self.faults:
+                return None
+            return Scenario(name=name, text=text, guideway=guideway, journey=journey, loads=found)
+        vehicle = self._section(tables, "vehicle", "vehicle")
+        interval = SOME_INTERVAL
+        if journey is not None and vehicle is not None:
+            interval = journey.interval(vehicle)
+            if self._attempt("run", lambda: journey.require_memory(vehicle)) is False:
+                return None
+        road = self._section(tables, "roughness", "roughness", interval=interval)
+        if vehicle is not None and road is not None and journey is not None:
+            paths = [contact.path for contact in vehicle.contacts]
+            self._attempt("roughness:", lambda: require_cover(road.profile, *interval, paths))
+        if self.faults:
+            return None
+        return Scenario(name=name, text=text, guideway=guideway, journey=journey, vehicle=vehicle, road=road)
+
+    def _section(self, tables: Mapping[str, Any], key: str, family: str, **given: Any) -> Any:
+        return self._built(tables[key], family, key, **given) if key in tables else None
+
+    def _built(self, table: Any, family: str, path: str, **given: Any) -> Any:
+        """Build one table, or return None and leave the reasons in `faults`."""
+        if not isinstance(table, dict):
+            self.faults.append(Fault(path, f"must be a table [{path}], got {table!r:.60}"))
+            return None
+        factory = self._factory(table, family, path)
+        if factory is None:
+            return None
+        parameters = {n: p for n, p in inspect.signature(factory).parameters.items() if n not in given}
+        required = {n for n, p in parameters.items() if p.default is p.empty}
+        known = [*parameters, *(["kind"] if family not in ("journey", "passage", "loads", "contact") else [])]
+        broken = self._check_keys(f"{path}.", table, known, required)
+        arguments: dict[str, Any] = dict.fromkeys(broken)
+        for key in parameters.keys() & table.keys():
+            before = len(self.faults)
+            arguments[key] = self._argument(key, table[key], parameters[key], f"{path}.{key}")
+            if len(self.faults) > before:
+                broken.add(key)
+        try:
+            made = factory(**arguments, **given)
+        except ParameterError as error:
+            for fault in error.faults:
+                # What is missing or broken has been reported; its stand-in None need not be.
+                if re.split(r"[\[.]", fault.name)[0] not in broken:
+                    self.faults.append(Fault(f"{path}.{fault.name}", fault.message))
+            return None
+        except ValueError as error:
+            if not broken:
+                self.faults.append(Fault(f"{path}:", str(error)))
+            return None
+        return None if broken else made
+
+    def _factory(self, table: Mapping[str, Any], family: str, path: str) -> Callable[..., Any] | None:
+        kind = table.get("kind", DEFAULT_KIND.get(family))
+        kinds = KINDS[family]
+        if kind is None:
+            self.faults.append(Fault(f"{path}.kind", f"is missing; it is one of {', '.join(kinds)}"))
+        elif not isinstance(kind, str) or kind not in kinds:
+            hint = _nearest(str(kind), kinds)
+            self.faults.append(Fault(f"{path}.kind", f"must be one of {', '.join(kinds)}, got {kind!r}{hint}"))
+        else:
+            return kinds[kind]
+        return None
+
+    def _argument(self, key: str, value: Any, parameter: inspect.Parameter, path: str) -> Any:
+        if key in TABLES:
+            return self._built(value, TABLES[key], path)
+        if key in TABLE_LISTS:
+            if not isinstance(value, list) or not value:
+                self.faults.append(Fault(path, f"must be one or more tables [[{path}]]"))
+                return None
+            return [self._built(table, TABLE_LISTS[key], f"{path}[{n}]") for n, table in enumerate(value)]
+        if parameter.annotation == "Path":
+            if not isinstance(value, str) or "\0" in value:
+                self.faults.append(Fault(path, f"must be the name of a file, got {value!r:.60}"))
+                return None
+            return self.folder / value
+        return value
+
+    def _check_keys(
+        self, prefix: str, table: Mapping[str, Any], known: Iterable[str], required: Iterable[str]
+    ) -> set[str]:
+        """Report unknown and missing keys; returns the missing ones."""
+        known = list(known)
+        for key in table:
+            if key not in known:
+                allowed = ", ".join(sorted(known))
+                self.faults.append(
+                    Fault(f"{prefix}{key}", f"is not known here{_nearest(key, known)}; allowed are {allowed}")
+                )
+        missing = set(required) - table.keys()
+        for key in sorted(missing):
+            self.faults.append(Fault(f"{prefix}{key}", "is missing"))
+        return missing
+
+    def _attempt(self, path: str, action: Callable[[], object]) -> bool:
+        """Run a check that raises; False if it did."""
+        try:
+            action()
+        except ValueError as error:
+            self.faults.append(Fault(path, str(error)))
+            return False
+        return True
+
+
+def _nearest(word: str, known: Iterable[str]) -> str:
+    """Suggest the nearest spelling."""
+    close = difflib.get_close_matches(word, list(known), n=1)
+    return f" (did you mean {close[0]!r}?)" if close else ""
