@@ -89,10 +89,13 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
 
 def beyond_nyquist(roughness: ComplexArray, grid: SpectralGrid) -> list[Finding]:
     """Roughness spectra, shape (frequency, contact), that reach up to the Nyquist frequency."""
-    slope = np.abs(grid.omega()[:, None] * roughness)
-    whole = np.sqrt((slope**2).sum(axis=0))
-    top = np.sqrt((slope[int(0.9 * grid.size) :] ** 2).sum(axis=0))
-    share = np.divide(top, whole, out=np.zeros_like(top), where=whole > 0).max(initial=0.0)
+    squared = grid.omega().real ** 2
+    first = int(0.9 * grid.size)
+    share = 0.0
+    for spectrum in roughness.T:
+        energy = (spectrum.real**2 + spectrum.imag**2) * squared
+        if energy.any():
+            share = max(share, float(np.sqrt(energy[first:].sum() / energy.sum())))
     if share <= AT_NYQUIST:
         return []
     return [

@@ -204,10 +204,11 @@ def simulate(
     coupled = couple(guideway, vehicle, roughness, speed=speed, grid=grid, progress=progress)
     progress("histories", 0.0)
     response = histories(coupled, grid)
+    critical_speed = float(guideway.critical_speed)
     seen = excitation.roughness if roughness is spectra else grid.to_histories(roughness).values
     found = [
         *find.contact_lost(response.force.values + steady.load, time_step),
-        *find.near_critical(speed, guideway.critical_speed),
+        *find.near_critical(speed, critical_speed),
         *find.not_decayed("vehicle's motion", response.motion.remainder, response.motion.values),
         *find.beyond_truncation(grid.truncation or 0.0, error),
         *find.beyond_nyquist(roughness, grid),
@@ -239,7 +240,7 @@ def simulate(
         "truncation_error": error,
         "blend": float(blend),
         "datum": excitation.datum,
-        "critical_speed": float(guideway.critical_speed),
+        "critical_speed": critical_speed,
         "guideway": repr(guideway),
         "findings": find.announced(found),
     }
@@ -325,8 +326,9 @@ def moving_loads(
         progress("moving FRF", last / grid.kept)
     progress("histories", 0.0)
     response = grid.to_histories(deflection)
+    critical_speed = float(guideway.critical_speed)
     found = [
-        *find.near_critical(abs(speed), guideway.critical_speed),
+        *find.near_critical(abs(speed), critical_speed),
         *find.not_decayed("deflection", response.remainder, response.values),
     ]
     values = {
@@ -341,7 +343,7 @@ def moving_loads(
         "speed": float(speed),
         "time_step": float(time_step),
         "truncation": 0.5 / time_step if truncation is None else float(truncation),
-        "critical_speed": float(guideway.critical_speed),
+        "critical_speed": critical_speed,
         "guideway": repr(guideway),
         "findings": find.announced(found),
     }

@@ -153,10 +153,12 @@ class SpectralGrid:
         histories = np.empty((spectra.shape[1], self.samples))
         remainder = np.empty(spectra.shape[1])
         last = self.padded // 100 + 1
-        factor = (1j * self.omega(slice(len(spectra)))) ** derivative if derivative else 1.0
+        i_omega = 1j * self.omega(slice(len(spectra)))
         growth = np.exp(self.decay * self.time_step * np.arange(self.samples)) / self.time_step
         for channel, spectrum in enumerate(spectra.T):
-            periodic = scipy.fft.irfft(spectrum * factor, self.padded, overwrite_x=True)
+            for _ in range(derivative):
+                spectrum = i_omega * spectrum
+            periodic = scipy.fft.irfft(spectrum, self.padded)
             np.multiply(periodic[: self.samples], growth, out=histories[channel])
             remainder[channel] = np.abs(periodic[-last:]).max() / (self.time_step * WRAP_AROUND)
         return Histories(histories.T, remainder)

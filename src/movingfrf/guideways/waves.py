@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import BoolArray, ComplexArray, FloatArray, NumberArray, SolveError
+from movingfrf._checks import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray, SolveError
 
 # Below this speed [m/s] the moving frame differs from the fixed one by rounding errors, while the roots that
 # run away to infinity as v → 0 (one per κⁿ that v alone keeps alive) begin to cost digits.
@@ -284,10 +284,6 @@ def _one_side(kappa: ComplexArray, weight: ComplexArray, chosen: BoolArray, ahea
     """Sum the chosen waves at the given offsets; which ones they are may change from frequency to frequency."""
     total = np.zeros((ahead.size, kappa.shape[1]), complex)
     for wave, belongs in enumerate(chosen):
-        if not belongs.any():
-            continue
-        # Where a wave belongs to the other side it takes part with weight zero.
-        amplitude = np.where(belongs, weight[wave], 0.0)
-        exponent = np.where(belongs, 1j * kappa[wave], 0.0)
-        total += amplitude * np.exp(exponent * ahead[:, None])
+        at: slice | IntArray = slice(None) if belongs.all() else np.flatnonzero(belongs)
+        total[:, at] += weight[wave, at] * np.exp(1j * kappa[wave, at] * ahead[:, None])
     return total

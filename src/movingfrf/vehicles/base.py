@@ -182,11 +182,15 @@ class Vehicle:
         dofs = len(mass)
         poles, vectors = np.linalg.eig(self._state_matrix())
         # Displacement and velocity in one unit each, else the condition number measures the units.
-        scaled = vectors / np.linalg.norm(vectors[:dofs], axis=0)
-        scaled[dofs:] /= np.abs(poles).max()
-        if not np.linalg.cond(scaled) < WORST_MODAL_CONDITION:
+        vectors[dofs:] /= np.abs(poles).max()
+        vectors /= np.linalg.norm(vectors, axis=0)
+        try:
+            inverse = np.linalg.inv(vectors)
+        except np.linalg.LinAlgError:
             return None
-        into_modes = np.linalg.inv(vectors)[:, dofs:] @ np.linalg.solve(mass, contact_map.T)
+        if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < WORST_MODAL_CONDITION:
+            return None
+        into_modes = inverse[:, dofs:] @ np.linalg.solve(mass, contact_map.T) / np.abs(poles).max()
         return Modes(poles, vectors[:dofs], into_modes)
 
     def motion(self, omega: ComplexArray, force: ComplexArray, modes: Modes | None) -> ComplexArray:
