@@ -19,9 +19,7 @@ GRAVITY = 9.81
 # The reference road, and a rail UIC60 per metre of track.
 PAVEMENT = mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9)
 RAIL = mf.EulerBernoulliBeam(bending_stiffness=6.42e6, mass=60.2)
-TIMOSHENKO = mf.TimoshenkoBeam(
-    bending_stiffness=1.573e7, mass=711.9, shear_stiffness=4.0e8, rotary_inertia=5.5
-)
+TIMOSHENKO = mf.TimoshenkoBeam(bending_stiffness=1.573e7, mass=711.9, shear_stiffness=4.0e8, rotary_inertia=5.5)
 SOIL = mf.Spring(stiffness=8.0e6, damping=3.0e4)
 SHEARED_SOIL = mf.ShearLayer(stiffness=8.0e6, damping=3.0e4, shear_stiffness=2.0e6)
 PAD = mf.Spring(stiffness=3.0e8, damping=3.0e4)
@@ -41,7 +39,7 @@ DAMPED: dict[str, Track] = {
 
 
 def undamped(part):
-    """The same beam, foundation or track without its losses."""
+    """Take the losses out of a beam, foundation or track."""
     if isinstance(part, Track):
         return mf.track(undamped(part.beam), undamped(part.foundation))
     if isinstance(part, mf.OnMass):
@@ -51,9 +49,7 @@ def undamped(part):
     return part if isinstance(part, mf.TimoshenkoBeam) else replace(part, damping=0.0)
 
 
-UNDAMPED: dict[str, Track] = {
-    name: undamped(road) for name, road in DAMPED.items() if name != "bending_damping"
-}
+UNDAMPED: dict[str, Track] = {name: undamped(road) for name, road in DAMPED.items() if name != "bending_damping"}
 TRACKS = {**DAMPED, **{f"undamped_{name}": road for name, road in UNDAMPED.items()}}
 
 
@@ -123,7 +119,7 @@ QUARTER_TRUCK = {
 
 
 def three_axle_truck() -> mf.Vehicle:
-    """A rigid body on three axles, assembled spring by spring: `bounce`, `pitch`, three wheels."""
+    """Build a rigid body on three axles, assembled spring by spring: `bounce`, `pitch`, three wheels."""
     axles = np.array([3.0, -1.2, -2.5])
     springs, dashpots = np.array([8e5, 1.5e6, 1.2e6]), np.array([2e4, 3e4, 2.5e4])
     tyres, wheels = np.array([2e6, 3.4e6, 3.0e6]), np.array([600.0, 1000.0, 900.0])

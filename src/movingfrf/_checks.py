@@ -19,7 +19,7 @@ IntArray = NDArray[np.integer[Any]]
 BoolArray = NDArray[np.bool_]
 
 # Physical quantities in SI units lie far inside these bounds; beyond them powers overflow.
-SMALLEST, LARGEST = 1e-30, 1e30
+SMALLEST, LARGEST = 1e-20, 1e20
 
 # The share of the free memory that one computation may plan to take.
 MEMORY_SHARE = 0.8
@@ -77,7 +77,9 @@ class Checks:
         if not np.isfinite(number):
             self.refuse(name, f"must be {condition}, got {number!r} {unit}")
         elif number and not SMALLEST <= abs(number) <= LARGEST:
-            self.refuse(name, f"must be of a magnitude within 1e-30 and 1e30, got {number!r} {unit}")
+            self.refuse(
+                name, f"must be of a credible magnitude, {SMALLEST:g} to {LARGEST:g}, got {number!r} {unit}"
+            )
         else:
             return number
         return float("nan")
@@ -119,21 +121,21 @@ class Checks:
             place = tuple(int(i) for i in bad[0])
             self.refuse(
                 name,
-                f"must be finite and at most 1e30 {unit} throughout, got {float(array[place])!r} "
+                f"must be finite and at most {LARGEST:g} {unit} throughout, got {float(array[place])!r} "
                 f"at index {place[0] if len(place) == 1 else place}",
             )
         array.flags.writeable = False
         return array
 
     def pair(self, name: str, value: Any, unit: str, *, positive: bool = True) -> tuple[float, float]:
-        """Demand two numbers, front and rear: positive ones, or at least zero."""
+        """Demand two numbers: positive ones, or at least zero."""
         try:
-            front, rear = value
+            first, second = value
         except (TypeError, ValueError):
-            self.refuse(name, f"must be two numbers (front, rear) [{unit}], got {value!r}")
+            self.refuse(name, f"must be two numbers [{unit}], got {value!r}")
             return (float("nan"), float("nan"))
         check = self.positive if positive else self.not_negative
-        return check(f"{name}[0]", front, unit), check(f"{name}[1]", rear, unit)
+        return check(f"{name}[0]", first, unit), check(f"{name}[1]", second, unit)
 
 
 @contextmanager

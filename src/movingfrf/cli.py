@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, CycloptsError, Parameter
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -31,6 +32,7 @@ PATIENCE = 1.0
 
 app = App(
     name="movingfrf",
+    suppress_keyboard_interrupt=False,
     version=VERSION,
     help="""How vehicles and roads shake each other, computed in the frequency domain.
 
@@ -177,16 +179,22 @@ class _Stages:
 
 
 def _print_result(console: Console, result: xr.Dataset, found: list[Measure]) -> None:
-    """Print measures, one line per quantity, and findings."""
-    table = Table(title="Measures", title_justify="left", title_style="bold", show_header=False, box=None)
-    for quantity in dict.fromkeys(measure.quantity for measure in found):
-        values = [
-            f"{m.name} {m.value:.4g}" + ("" if m.units == "1" else f" {m.units}")
-            for m in found
-            if m.quantity == quantity
-        ]
-        table.add_row(quantity, ", ".join(values))
-    console.print(table)
+    """Print measures, one table for all quantities that were measured alike, and findings."""
+    quantities: dict[str, list[Measure]] = {}
+    for measure in found:
+        quantities.setdefault(measure.quantity, []).append(measure)
+    tables: dict[tuple[tuple[str, str], ...], Table] = {}
+    for quantity, taken in quantities.items():
+        columns = tuple((measure.name, measure.units) for measure in taken)
+        if columns not in tables:
+            tables[columns] = Table(box=None, pad_edge=False)
+            tables[columns].add_column("", no_wrap=True)
+            for name, units in columns:
+                tables[columns].add_column(escape(f"{name} [{units}]"), justify="right")
+        tables[columns].add_row(quantity, *(f"{measure.value:.4g}" for measure in taken))
+    for table in tables.values():
+        console.print(table)
+        console.print()
     findings = json.loads(result.attrs["findings"])
     console.print("Findings" if findings else "Findings: none", style="bold")
     for finding in findings:
@@ -219,7 +227,7 @@ def main(arguments: list[str] | None = None) -> int:
         return REFUSED
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        print(f"movingfrf: {place}{error.strerror or error}", file=sys.stderr)
+        print(f"movingfrf: cannot read or write {place}{error.strerror or error}", file=sys.stderr)
         return REFUSED
     return DONE
 

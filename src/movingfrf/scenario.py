@@ -159,8 +159,9 @@ def iso_road(
     seed: int = 0,
 ) -> Road:
     """Realise an ISO 8608 road, by class or by roughness, over the interval that the journey needs."""
-    if (roughness is None) == (road_class is None):
-        raise ValueError("needs either road_class, A to H, or roughness, in m³ at 0.1 cycle/m, and not both")
+    with checking() as check:
+        if (roughness is None) == (road_class is None):
+            check.refuse("road_class", "or roughness is needed: a class, A to H, or a number [m³], not both")
     if road_class is not None:
         spectrum = IsoRoad.of_class(road_class, waviness=waviness, band=band)
     else:
@@ -244,7 +245,7 @@ DEFAULT_KIND = {
 
 # Arguments that are tables themselves, and those that are lists of tables, with their family.
 TABLES = {"beam": "beam", "foundation": "foundation", "above": "foundation", "below": "foundation"}
-TABLE_LISTS = {"contacts": "contact", "force": "force"}
+TABLE_LISTS = {("vehicle", "contacts"): "contact", ("loads", "force"): "force"}
 
 WITH_VEHICLE, WITH_LOADS = {"guideway", "vehicle", "roughness", "run"}, {"guideway", "loads", "run"}
 
@@ -344,7 +345,7 @@ class _Builder:
         interval = SOME_INTERVAL
         if journey is not None and vehicle is not None:
             interval = journey.interval(vehicle)
-            if self._attempt("run", lambda: journey.require_memory(vehicle)) is False:
+            if self._attempt("run:", lambda: journey.require_memory(vehicle)) is False:
                 return None
         road = self._section(tables, "roughness", "roughness", interval=interval)
         if vehicle is not None and road is not None and journey is not None:
@@ -372,7 +373,7 @@ class _Builder:
         arguments: dict[str, Any] = dict.fromkeys(broken)
         for key in parameters.keys() & table.keys():
             before = len(self.faults)
-            arguments[key] = self._argument(key, table[key], parameters[key], f"{path}.{key}")
+            arguments[key] = self._argument(family, key, table[key], parameters[key].annotation, f"{path}.{key}")
             if len(self.faults) > before:
                 broken.add(key)
         try:
@@ -401,15 +402,16 @@ class _Builder:
             return kinds[kind]
         return None
 
-    def _argument(self, key: str, value: Any, parameter: inspect.Parameter, path: str) -> Any:
+    def _argument(self, family: str, key: str, value: Any, annotation: str, path: str) -> Any:
         if key in TABLES:
             return self._built(value, TABLES[key], path)
-        if key in TABLE_LISTS:
+        if (family, key) in TABLE_LISTS:
             if not isinstance(value, list) or not value:
                 self.faults.append(Fault(path, f"must be one or more tables [[{path}]]"))
                 return None
-            return [self._built(table, TABLE_LISTS[key], f"{path}[{n}]") for n, table in enumerate(value)]
-        if parameter.annotation == "Path":
+            listed = TABLE_LISTS[family, key]
+            return [self._built(table, listed, f"{path}[{n}]") for n, table in enumerate(value)]
+        if annotation == "Path":
             if not isinstance(value, str) or "\0" in value:
                 self.faults.append(Fault(path, f"must be the name of a file, got {value!r:.60}"))
                 return None

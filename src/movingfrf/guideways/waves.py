@@ -21,9 +21,11 @@ from movingfrf._checks import BoolArray, ComplexArray, FloatArray, IntArray, Num
 # run away to infinity as v → 0 (one per κⁿ that v alone keeps alive) begin to cost digits.
 AT_REST = 1e-13
 
-# A root whose distance from the real axis is within this many rounding errors is taken as real and
-# classified by the direction in which damping would push it.
-REAL_WITHIN = 1e6 * np.finfo(float).eps
+# A root within so many rounding errors of the real axis is taken as real and classified by the direction in which
+# damping would push it. Two real roots within so many of each other pinch the contour between them: the response
+# is infinite.
+ROUNDING = np.finfo(float).eps
+REAL_WITHIN, MERGED_WITHIN = 1e6, 1e4
 
 
 # Newton steps on a root: the last one moves it by less than this, and squares the error.
@@ -252,9 +254,13 @@ def residue_sum(
         if derivative:
             weight *= (1j * kappa) ** derivative
         side = kappa.imag.copy()
-        rounding = REAL_WITHIN * evaluated(denominator.magnitudes, np.abs(kappa))
-        doubtful = np.abs(side) * np.abs(slope) <= rounding
+        rounding = ROUNDING * evaluated(denominator.magnitudes, np.abs(kappa))
+        doubtful = np.abs(side) * np.abs(slope) <= REAL_WITHIN * rounding
+        infinite: BoolArray = np.zeros(omega.size, bool)
         if doubtful.any():
+            bend = evaluated(slopes(slopes(denominator.coefficients)), kappa)
+            merging = _squared(slope) <= MERGED_WITHIN * rounding * np.abs(bend)
+            infinite |= (doubtful & merging).any(axis=0)
             # Im κ(ω − i0⁺) has the sign of Re(∂D/∂ω ÷ ∂D/∂κ).
             by_omega = in_moving_frame(_by_omega(stiffness.above), speed, omega).coefficients
             side = np.where(doubtful, (evaluated(by_omega, kappa) / slope).real, side)
@@ -265,7 +271,7 @@ def residue_sum(
                 frf[here] = _one_side(kappa, weight, (side > 0) == forward, ahead[here])
                 if not forward:
                     frf[here] *= -1.0
-    bad = ~np.isfinite(frf).all(axis=0)
+    bad = infinite | ~np.isfinite(frf).all(axis=0)
     if bad.any():
         frequency = omega[bad.argmax()] / (2 * np.pi)
         raise SolveError(

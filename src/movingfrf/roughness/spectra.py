@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from movingfrf._checks import FloatArray, checking
+from movingfrf._checks import Checks, FloatArray, checking
 
 # Spatial frequency at which ISO 8608 states the roughness [cycle/m].
 REFERENCE_FREQUENCY = 0.1
@@ -53,11 +53,8 @@ class IsoRoad:
         """Check the parameters."""
         with checking() as check:
             check.positive("roughness", self.roughness, "m³")
-            check.finite("waviness", self.waviness, "1")
-            low, high = check.pair("band", self.band, "cycle/m")
-            if low >= high:
-                check.refuse("band", f"must be two increasing frequencies, got {self.band!r} cycle/m")
-        object.__setattr__(self, "band", (low, high))
+            band = _checked_band(check, self.waviness, self.band)
+        object.__setattr__(self, "band", band)
 
     @classmethod
     def of_class(cls, letter: str, *, waviness: float = 2.0, band: tuple[float, float] = (0.01, 10.0)) -> IsoRoad:
@@ -85,6 +82,7 @@ class IsoRoad:
         with checking() as check:
             if not isinstance(letter, str) or letter.upper() not in CLASS_CENTRES:
                 check.refuse("road_class", f"must be one of {', '.join(CLASS_CENTRES)}, got {letter!r}")
+            _checked_band(check, waviness, band)
         return cls(roughness=CLASS_CENTRES[letter.upper()], waviness=waviness, band=band)
 
     def density(self, spatial_frequency: FloatArray) -> FloatArray:
@@ -124,6 +122,14 @@ class IsoRoad:
         if power == 0:
             return scale * np.log(n / low)
         return scale * (n**power - low**power) / power
+
+
+def _checked_band(check: Checks, waviness: float, band: tuple[float, float]) -> tuple[float, float]:
+    check.finite("waviness", waviness, "1")
+    low, high = check.pair("band", band, "cycle/m")
+    if low >= high:
+        check.refuse("band", f"must be two increasing frequencies, got {band!r} cycle/m")
+    return low, high
 
 
 def iso_class(roughness: float) -> str:

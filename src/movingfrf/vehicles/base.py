@@ -288,17 +288,17 @@ def _admittance(omega: ComplexArray, poles: ComplexArray) -> ComplexArray:
 
 
 def _contacts(check: Checks, contacts: Sequence[Contact]) -> tuple[Contact, ...]:
-    contacts = tuple(contacts)
+    contacts = tuple(contacts) if isinstance(contacts, (list, tuple)) else ()
     if not contacts or not all(isinstance(contact, Contact) for contact in contacts):
-        check.refuse("contacts", f"must be one or more Contact objects, got {contacts!r}")
+        check.refuse("contacts", "must be a list of one or more Contact objects")
         return ()
     return contacts
 
 
 def _names(check: Checks, names: Sequence[str]) -> tuple[str, ...]:
-    names = tuple(names)
+    names = tuple(names) if isinstance(names, (list, tuple)) else ()
     if not names or not all(isinstance(name, str) for name in names) or len(set(names)) < len(names):
-        check.refuse("dof_names", f"must be one or more different names, got {names!r}")
+        check.refuse("dof_names", "must be a list of one or more different names")
     return names
 
 

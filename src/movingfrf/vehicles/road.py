@@ -122,7 +122,7 @@ def half_car(
         try:
             front, rear = (check.finite(f"axles[{n}]", x, "m") for n, x in enumerate(axles))
         except (TypeError, ValueError):
-            check.refuse("axles", f"must be two numbers (+a, −b) [m], got {axles!r}")
+            check.refuse("axles", f"must be two numbers, (+a, −b) [m], got {axles!r}")
         else:
             if front <= rear:
                 check.refuse("axles", f"must have the front axle ahead of the rear one, got {axles!r} m")

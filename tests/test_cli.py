@@ -1,0 +1,152 @@
+"""The command, as a user meets it: files, messages, exit statuses."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from movingfrf.cli import main
+from tests.test_scenario import LOADS, edited
+
+SHORT = edited(duration=2.0)
+
+
+@pytest.fixture
+def scenario(tmp_path):
+    file = tmp_path / "truck.toml"
+    file.write_text(SHORT)
+    return file
+
+
+def test_new_check_run(tmp_path, capsys):
+    file = tmp_path / "case.toml"
+    assert main(["new", str(file)]) == 0
+    assert main(["new", str(file)]) == 0  # again, unchanged
+    file.write_text(SHORT)
+    assert main(["check", str(file)]) == 0
+    told = capsys.readouterr().out
+    for words in ("177.53 m/s", "10.332 Hz", "98.40 kN", "3.581 mm", "class A", "2000 of 0.001 s", "in order"):
+        assert words in told
+    assert main(["run", str(file)]) == 0
+    told = capsys.readouterr().out
+    for words in ("coefficient", "rear_wheel acceleration", "Findings", "coupling", "result.nc"):
+        assert words in told
+    assert sorted(p.name for p in (tmp_path / "out" / "case").iterdir()) == [
+        "report.html",
+        "result.nc",
+        "summary.json",
+    ]
+
+
+def test_new_prints_without_a_file_and_protects_what_exists(tmp_path, capsys):
+    assert main(["new"]) == 0
+    assert "[guideway.beam]" in capsys.readouterr().out
+    (tmp_path / "mine.toml").write_text("mine")
+    assert main(["new", str(tmp_path / "mine.toml")]) == 2
+    assert (tmp_path / "mine.toml").read_text() == "mine"
+    assert main(["new", str(tmp_path / "mine.toml"), "--force"]) == 0
+
+
+def test_the_result_reopens_equal_and_equal_input_gives_equal_bytes(scenario, tmp_path):
+    for name in ("a", "b"):
+        assert main(["run", str(scenario), "--output", str(tmp_path / name)]) == 0
+        time.sleep(1.1 if name == "a" else 0)  # a clock in a file would show
+    for file in ("result.nc", "summary.json", "report.html"):
+        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
+    from movingfrf import read_scenario
+
+    direct = read_scenario(scenario).run()
+    with xr.open_dataset(tmp_path / "a" / "result.nc") as reopened:
+        xr.testing.assert_identical(reopened.load(), direct)
+    summary = json.loads((tmp_path / "a" / "summary.json").read_text())
+    force = next(
+        m for m in summary["measures"] if m["quantity"] == "contact 1 force" and m["name"] == "dynamic rms"
+    )
+    assert force["value"] == pytest.approx(np.sqrt((direct.contact_force[:, 1] ** 2).mean().item()), rel=1e-12)
+    assert force["units"] == "N"
+
+
+def test_prescribed_loads_run_too(tmp_path, capsys):
+    file = tmp_path / "loads.toml"
+    file.write_text(LOADS)
+    assert main(["check", str(file)]) == 0
+    assert main(["run", str(file), "--output", str(tmp_path / "out")]) == 0
+    with xr.open_dataset(tmp_path / "out" / "result.nc") as result:
+        assert result.deflection.dims == ("time", "point")
+    assert "peak" in capsys.readouterr().out
+
+
+def test_an_earlier_result_and_other_files_survive_a_failed_run(scenario, tmp_path, monkeypatch, capsys):
+    output = tmp_path / "out"
+    assert main(["run", str(scenario), "--output", str(output)]) == 0
+    (output / "notes.txt").write_text("mine")
+    before = {file.name: file.read_bytes() for file in output.iterdir()}
+
+    def fails(*_args, **_kwargs):
+        raise OSError(28, "No space left on device")
+
+    import movingfrf.report
+
+    monkeypatch.setattr(movingfrf.report, "render", fails)
+    scenario.write_text(edited(duration=3.0))
+    assert main(["run", str(scenario), "--output", str(output)]) == 2
+    assert {file.name: file.read_bytes() for file in output.iterdir()} == before
+    assert "No space left" in capsys.readouterr().err
+    assert main(["run", str(scenario), "--output", str(tmp_path / "fresh" / "deep")]) == 2
+    assert not (tmp_path / "fresh").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run"], "FILE"),
+        (["runn", "x"], "run"),
+        (["run", "{scenario}", "--outptu", "x"], "--output"),
+        (["run", "none.toml"], "No such file"),
+        (["check", "{folder}"], "cannot be read"),
+        (["run", "{scenario}", "--output", "{scenario}"], "File exists"),
+        (["run", "{scenario}", "--output", "/proc/nowhere"], "cannot read or write"),
+    ],
+)
+def test_refusals_are_one_message_and_status_2(arguments, message, scenario, capsys):
+    filled = [word.format(scenario=scenario, folder=scenario.parent) for word in arguments]
+    assert main(filled) == 2
+    told = capsys.readouterr()
+    assert message in told.err
+    assert "Traceback" not in told.err
+    assert told.out == ""
+
+
+def test_an_unsolvable_case_is_refused_with_frequency_and_speed(tmp_path, capsys):
+    file = tmp_path / "resonant.toml"
+    # An undamped road driven at exactly its critical speed.
+    critical = (2 * np.sqrt(8.0e6 * 1.573e7) / 711.9) ** 0.5
+    file.write_text(edited(duration=1.0, speed=repr(float(critical)), damping=0.0))
+    assert main(["run", str(file), "--output", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert "Hz" in told
+    assert "177.5" in told
+    assert not (tmp_path / "out").exists()
+
+
+def test_interruption_leaves_nothing(tmp_path):
+    file = tmp_path / "long.toml"
+    file.write_text(edited(duration=1200.0))
+    output = tmp_path / "out"
+    command = [sys.executable, "-m", "movingfrf", "run", str(file), "--output", str(output)]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, env=os.environ, text=True)
+    until = time.monotonic() + 60
+    while not output.exists() and time.monotonic() < until:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted" in told
+    assert "Traceback" not in told
+    assert not output.exists()

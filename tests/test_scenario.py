@@ -1,0 +1,261 @@
+"""Scenario files: what they build, and everything that is wrong with one reported at once."""
+
+from importlib.resources import files
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import movingfrf as mf
+from movingfrf.scenario import KINDS, parse_scenario
+
+TEMPLATE = files("movingfrf").joinpath("templates", "scenario.toml").read_text(encoding="utf-8")
+
+LOADS = """
+[guideway]
+beam = {kind = "euler_bernoulli_beam", bending_stiffness = 1.573e7, mass = 711.9}
+foundation = {kind = "spring", stiffness = 8e6, damping = 3e4}
+
+[loads]
+positions = [0.0, -2.5]
+observe = [0.0, 1.0, -2.5]
+[[loads.force]]
+kind = "constant"
+force = 1e5
+ramp = 0.2
+[[loads.force]]
+kind = "harmonics"
+mean = 5e4
+amplitudes = [1e4]
+frequencies = [12.0]
+switch_off = 1.5
+ramp = 0.2
+
+[run]
+speed = 10.0
+duration = 2.0
+"""
+
+
+def faults(text, **where):
+    with pytest.raises(mf.ScenarioError) as caught:
+        parse_scenario(text, **where)
+    return {fault.name: fault.message for fault in caught.value.faults}
+
+
+def edited(**changes):
+    """Replace the values of some keys of the template; a value of None removes the line."""
+    lines = []
+    for line in TEMPLATE.splitlines():
+        key = line.split("=")[0].strip()
+        if key not in changes:
+            lines.append(line)
+        elif changes[key] is not None:
+            lines.append(f"{key} = {changes[key]}")
+    return "\n".join(lines)
+
+
+def test_the_template_is_the_reference_case():
+    scenario = parse_scenario(TEMPLATE)
+    assert (scenario.journey.speed, scenario.journey.duration, scenario.journey.truncation) == (10.0, 24.0, 70.0)
+    road = mf.track(
+        mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9), mf.Spring(stiffness=8e6, damping=3e4)
+    )
+    assert scenario.guideway == road
+    assert scenario.vehicle.dof_names == ("bounce", "pitch", "front_wheel", "rear_wheel")
+    assert "class A" in scenario.road.description
+
+
+def test_a_scenario_is_the_same_call_as_in_python():
+    scenario = parse_scenario(edited(duration=2.0))
+    result = scenario.run()
+    direct = mf.simulate(
+        scenario.guideway, scenario.vehicle, scenario.road.profile, speed=10.0, duration=2.0, truncation=70.0
+    )
+    assert result.attrs["scenario"] == scenario.text
+    assert result.drop_attrs().identical(direct.drop_attrs())
+
+
+def test_loads_from_a_scenario_are_the_same_call_as_in_python():
+    result = parse_scenario(LOADS).run()
+    assert dict(result.sizes) == {"time": 2000, "load": 2, "point": 3}
+    time = np.arange(2000) * 1e-3
+    step = lambda x: (lambda y: y**3 * (10 - 15 * y + 6 * y**2))(np.clip(x, 0, 1))  # noqa: E731
+    force = np.stack(
+        [
+            1e5 * step(time / 0.2),
+            (5e4 + 1e4 * np.sin(2 * np.pi * 12 * time)) * step(time / 0.2) * step((1.5 - time) / 0.2),
+        ],
+        axis=1,
+    )
+    assert np.allclose(result.force, force, atol=1e-6)
+    road = parse_scenario(TEMPLATE).guideway
+    direct = mf.moving_loads(road, force, [0.0, -2.5], speed=10.0, observe=[0.0, 1.0, -2.5])
+    assert np.allclose(result.deflection, direct.deflection, atol=1e-15)
+
+
+def test_forces_from_a_file(tmp_path):
+    (tmp_path / "axles.csv").write_text("t,a,b\n" + "\n".join(f"{0.1 * n},{n},{n * n}" for n in range(21)))
+    text = LOADS[: LOADS.index("[[loads.force]]")] + LOADS[LOADS.index("[run]") :]
+    text = text.replace(
+        "[run]",
+        '[[loads.force]]\nkind = "tabulated"\nfile = "axles.csv"\ncolumn = 2\n'
+        '[[loads.force]]\nkind = "random_sum"\nrms = 100.0\nlowest = 1.0\nhighest = 20.0\nseed = 3\n[run]',
+    )
+    force = parse_scenario(text, folder=tmp_path).run().force.values
+    assert force[1000, 0] == pytest.approx(100.0)
+    assert np.sqrt(np.mean(force[:, 1] ** 2)) == pytest.approx(100.0, rel=0.2)  # 2 s of 50 waves
+    assert faults(text.replace("column = 2", "column = 3"), folder=tmp_path) == {
+        "loads.force[0].column": f"must be at most 2, the columns of {tmp_path / 'axles.csv'}, got 3"
+    }
+
+
+def test_a_user_vehicle_and_a_nested_track():
+    text = """
+[guideway.beam]
+kind = "timoshenko_beam"
+bending_stiffness = 6.4e6
+mass = 60.2
+shear_stiffness = 2.5e8
+rotary_inertia = 0.24
+[guideway.foundation]
+kind = "on_mass"
+mass = 250.0
+above = {kind = "spring", stiffness = 3e8, damping = 3e4}
+below = {kind = "shear_layer", stiffness = 1e8, damping = 8e4, shear_stiffness = 1e6}
+[vehicle]
+kind = "vehicle"
+mass = [[900.0]]
+damping = [[0.0]]
+stiffness = [[0.0]]
+contact_map = [[1.0]]
+vertical = [1.0]
+dof_names = ["wheel"]
+[[vehicle.contacts]]
+position = 0.0
+stiffness = 1e8
+damping = 1e4
+[roughness]
+kind = "harmonic"
+amplitude = 1e-5
+wavelength = 1.0
+[run]
+speed = 30.0
+duration = 1.0
+"""
+    result = parse_scenario(text).run()
+    assert list(result.dof.values) == ["wheel"]
+    assert result.static_load.item() == pytest.approx(900 * 9.81)
+
+
+def test_all_faults_at_once():
+    text = edited(mass=-1, stiffness="nan", speed=None, seed=1.5, axles="[1.0]", wheel_masses='"x"', band="[1.0]")
+    found = faults(text.replace("duration", "durration").replace('"half_car"', '"half_car"\nmas = 1'))
+    assert set(found) == {
+        "guideway.beam.mass",
+        "guideway.foundation.stiffness",
+        "vehicle.mas",
+        "vehicle.wheel_masses",
+        "vehicle.axles",
+        "roughness.band",
+        "run.durration",
+        "run.duration",
+        "run.speed",
+    }
+    assert found["guideway.beam.mass"] == "must be positive, got -1.0 kg/m"
+    assert "did you mean 'duration'?" in found["run.durration"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "name", "message"),
+    [
+        ({"bending_stiffness": 0}, "guideway.beam.bending_stiffness", "must be positive, got 0.0 N m²"),
+        ({"bending_stiffness": "1e300"}, "guideway.beam.bending_stiffness", "credible magnitude"),
+        ({"bending_stiffness": "true"}, "guideway.beam.bending_stiffness", "must be a positive number"),
+        ({"damping": -1}, "guideway.foundation.damping", "must not be negative, got -1.0 N s/m²"),
+        ({"body_mass": "inf"}, "vehicle.body_mass", "got inf kg"),
+        ({"tyre_stiffness": "[1e6, 0.0]"}, r"vehicle.tyre_stiffness[1]", "must be positive, got 0.0 N/m"),
+        ({"axles": "[-2.0, 2.0]"}, "vehicle.axles", "front axle ahead of the rear one"),
+        ({"speed": 0}, "run.speed", "must be positive, got 0.0 m/s"),
+        ({"time_step": -0.001}, "run.time_step", "must be positive, got -0.001 s"),
+        ({"duration": 0.0001}, "run.duration", "at least two time steps"),
+        ({"truncation": -1}, "run.truncation", "must not be negative, got -1.0 Hz"),
+        ({"duration": "1e9"}, "run:", "GiB of memory"),
+        ({"road_class": '"Q"'}, "roughness.road_class", "must be one of A, B, C, D, E, F, G, H, got 'Q'"),
+        ({"road_class": None}, "roughness.road_class", "needed"),
+        ({"waviness": '"two"'}, "roughness.waviness", "must be a finite number"),
+        ({"step": 0.2}, "roughness.step", "half of the shortest wave"),
+        ({"step": 1e-9}, "roughness:", "GiB of memory"),
+        ({"seed": -1}, "roughness.seed", "whole number"),
+        ({"kind": "3"}, "guideway.kind", "must be one of track, rigid_guideway, got 3"),
+    ],
+)
+def test_impossible_values(changes, name, message):
+    assert message in faults(edited(**changes))[name]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "is empty"),
+        ("# only a comment\n", "is empty"),
+        ("a = ", "is not TOML"),
+        ("x = 1", "is not known here"),
+        ("guideway = 3", "must be a table"),
+        ("[vehicle]\nkind = 'vehicle'\ncontacts = 3", "must be one or more tables"),
+    ],
+)
+def test_texts_that_are_no_scenario(text, message):
+    assert any(message in found for found in faults(text).values())
+
+
+def test_files_that_are_no_scenario(tmp_path):
+    for content, message in [(bytes(range(256)), "not a text file"), (b"", "is empty"), (None, "No such file")]:
+        file = tmp_path / f"{message.split()[0]}.toml"
+        if content is not None:
+            file.write_bytes(content)
+        with pytest.raises(mf.ScenarioError, match=message):
+            mf.read_scenario(file)
+    with pytest.raises(mf.ScenarioError, match="cannot be read"):
+        mf.read_scenario(tmp_path)
+
+
+def test_a_profile_shorter_than_the_journey(tmp_path):
+    (tmp_path / "short.csv").write_text("\n".join(f"{x},0.0" for x in range(100)))
+    text = TEMPLATE[: TEMPLATE.index("[roughness]")] + '[roughness]\nkind = "profile"\nfile = "short.csv"\n'
+    text += TEMPLATE[TEMPLATE.index("[run]") :]
+    assert faults(text, folder=tmp_path) == {
+        "roughness:": "the profile must cover the journey from -2.05387 m to 242.216 m, "
+        "but it reaches from 0 m to 99 m"
+    }
+    missing = faults(text.replace("short.csv", "none.csv"), folder=tmp_path)
+    assert "No such file" in missing["roughness:"]
+
+
+values = st.one_of(
+    st.sampled_from(
+        ["nan", "-inf", "1e300", "-1", "0", '""', "[]", "[[1]]", "{}", "true", "1979-05-27", '"A"', "[1, 2]"]
+    ),
+    st.floats(allow_nan=False, allow_infinity=False).map(repr),
+)
+keys = st.sampled_from(
+    [line.split("=")[0].strip() for line in TEMPLATE.splitlines() if "=" in line and line[0] != "#"]
+)
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(st.dictionaries(keys, values, min_size=1, max_size=3), st.integers(0, len(TEMPLATE)))
+def test_nonsense_is_refused_and_never_a_defect(changes, cut):
+    """Whatever a scenario says, it is built or refused with a ScenarioError."""
+    for text in (edited(**changes), TEMPLATE[:cut]):
+        try:
+            parse_scenario(text)
+        except mf.ScenarioError as error:
+            assert error.faults  # noqa: PT017
+
+
+def test_every_kind_is_reachable_and_names_its_arguments():
+    for family, kinds in KINDS.items():
+        for kind, factory in kinds.items():
+            assert callable(factory), (family, kind)
