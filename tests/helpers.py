@@ -140,11 +140,26 @@ def three_axle_truck() -> mf.Vehicle:
     )
 
 
+def lump() -> mf.Vehicle:
+    """Put one mass on one contact, damped critically: its double pole has a single mode."""
+    mass, stiffness = 2000.0, 2.0e5
+    return mf.Vehicle(
+        mass=[[mass]],
+        damping=[[0.0]],
+        stiffness=[[0.0]],
+        contact_map=[[1.0]],
+        contacts=[mf.Contact(position=0.0, stiffness=stiffness, damping=2 * np.sqrt(mass * stiffness))],
+        vertical=[1],
+        dof_names=["mass"],
+    )
+
+
 VEHICLES: dict[str, mf.Vehicle] = {
     "quarter_car": mf.quarter_car(**QUARTER_CAR),
     "quarter_truck": mf.quarter_car(**QUARTER_TRUCK),
     "half_truck": mf.half_car(**HALF_TRUCK),
     "three_axles": three_axle_truck(),
+    "critically_damped_mass": lump(),
     "footprint": mf.quarter_car(**QUARTER_TRUCK, footprint=0.2),
 }
 

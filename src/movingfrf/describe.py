@@ -71,12 +71,12 @@ def _roughness(profile: Profile, description: str) -> list[tuple[str, str]]:
     ]
     step = float(np.median(np.diff(stations)))
     uniform = profile.along()(np.arange(stations[0], stations[-1], step))
-    roughness, waviness = fit_iso(*welch(uniform, step)) if uniform.size > 64 else (np.nan, np.nan)
+    spectrum = welch(uniform, step)
+    roughness, waviness = fit_iso(*spectrum)
     if np.isfinite(roughness):
-        fitted = (
-            f"{roughness:.3g} m³ at 0.1 cycle/m with waviness {waviness:.2f}: ISO 8608 class {iso_class(roughness)}"
-        )
-        lines.append(("fitted spectrum", fitted))
+        at_two, _ = fit_iso(*spectrum, waviness=2.0)
+        lines.append(("fitted spectrum", f"{roughness:.3g} m³ at 0.1 cycle/m with waviness {waviness:.2f}"))
+        lines.append(("ISO 8608 class", f"{iso_class(at_two)} ({at_two:.3g} m³ at 0.1 cycle/m with waviness 2)"))
     return lines
 
 

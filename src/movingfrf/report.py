@@ -509,11 +509,14 @@ def _class_words(result: xr.Dataset) -> str:
     """Say what the fit found, path by path."""
     said = []
     for contact in plots.foremost(result):
-        level, waviness = fit_iso(*plots.road_spectrum(result, contact))
+        spectrum = plots.road_spectrum(result, contact)
+        level, waviness = fit_iso(*spectrum)
         if np.isfinite(level):
+            at_two, _ = fit_iso(*spectrum, waviness=2.0)
             said.append(
-                f"class {iso_class(level)} under contact {contact}: roughness "
-                f"{number(1e6 * level, 3)} × 10⁻⁶ m³ at 0.1 cycle/m, waviness {number(waviness, 3)}"
+                f"{number(1e6 * level, 3)} × 10⁻⁶ m³ at 0.1 cycle/m with waviness {number(waviness, 3)} under "
+                f"contact {contact}; with the waviness 2 of the standard {number(1e6 * at_two, 3)} × 10⁻⁶ m³, "
+                f"class {iso_class(at_two)}"
             )
     if not said:
         return "The road is flat, or its record too short, so no class is fitted."

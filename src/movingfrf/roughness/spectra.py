@@ -14,6 +14,12 @@ REFERENCE_FREQUENCY = 0.1
 # Geometric class centres of ISO 8608 at 0.1 cycle/m [m³]; the limits between classes are twice these.
 CLASS_CENTRES = {letter: 16e-6 * 4.0**n for n, letter in enumerate("ABCDEFGH")}
 
+# Bands in which ISO 8608 smooths a spectrum [cycle/m]: octaves up to a centre of 1/32, thirds of octaves up to 1/4,
+# twelfths beyond, over the range that it fits, 0.011 to 2.83.
+SMOOTHING_EDGES = np.concatenate(
+    [2.0 ** np.array([-6.5, -5.5]), 2.0 ** (np.arange(-27, -9, 2) / 6), 2.0 ** (np.arange(-42, 37, 2) / 24)]
+)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IsoRoad:
@@ -179,11 +185,13 @@ def welch(elevation: FloatArray, step: float, *, segments: int = 8) -> tuple[Flo
     return n[3:], density[3:]
 
 
-def fit_iso(spatial_frequency: FloatArray, density: FloatArray) -> tuple[float, float]:
-    """Fit roughness and waviness to an estimated spectrum, octave by octave.
+def fit_iso(
+    spatial_frequency: FloatArray, density: FloatArray, *, waviness: float | None = None
+) -> tuple[float, float]:
+    """Fit roughness and waviness to an estimated spectrum, as ISO 8608 does.
 
-    The mean density of each octave (of frequency, as ISO 8608 smooths) enters a straight line in logarithms,
-    over 0.011–2.83 cycle/m as the standard says, or the part of it that the estimate covers.
+    The mean density of each band of `SMOOTHING_EDGES` enters a straight line in logarithms, over 0.011 to 2.83
+    cycle/m or the part of it that the estimate covers.
 
     Parameters
     ----------
@@ -191,21 +199,23 @@ def fit_iso(spatial_frequency: FloatArray, density: FloatArray) -> tuple[float, 
         Spatial frequency [cycle/m].
     density : ndarray
         Spectral density [m³].
+    waviness : float, optional
+        Exponent to keep to: 2 for the class of ISO 8608. None fits it too.
 
     Returns
     -------
     roughness : float
-        G_d at 0.1 cycle/m [m³].
+        G_d at 0.1 cycle/m [m³]; nan if the estimate covers too little.
     waviness : float
         Exponent w.
     """
-    edges = 2.0 ** (np.arange(-13, 4) / 2)
-    edges = edges[(edges >= 0.011 / 1.05) & (edges <= 2.83 * 1.05)]
-    band = np.digitize(spatial_frequency, edges)
-    used = [b for b in range(1, edges.size) if (band == b).any() and density[band == b].mean() > 0]
+    band = np.digitize(spatial_frequency, SMOOTHING_EDGES)
+    used = [b for b in range(1, SMOOTHING_EDGES.size) if (band == b).any() and density[band == b].mean() > 0]
     if len(used) < 2:
         return float("nan"), float("nan")
-    log_n = np.array([np.log(spatial_frequency[band == b]).mean() for b in used])
+    log_n = np.array([np.log(spatial_frequency[band == b]).mean() for b in used]) - np.log(REFERENCE_FREQUENCY)
     log_density = np.array([np.log(density[band == b].mean()) for b in used])
-    slope, level = np.polyfit(log_n - np.log(REFERENCE_FREQUENCY), log_density, 1)
+    if waviness is not None:
+        return float(np.exp((log_density + waviness * log_n).mean())), waviness
+    slope, level = np.polyfit(log_n, log_density, 1)
     return float(np.exp(level)), float(-slope)
