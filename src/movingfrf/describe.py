@@ -93,11 +93,14 @@ def _loads(scenario: Scenario) -> list[tuple[str, str]]:
 
 def _run(scenario: Scenario) -> list[tuple[str, str]]:
     journey = scenario.journey
-    grid = SpectralGrid(samples=journey.samples, time_step=journey.time_step, truncation=journey.truncation)
-    channels = 2
     if scenario.vehicle is not None:
+        grid = journey.grid(scenario.vehicle)
         channels = len(scenario.vehicle.contacts) + len(scenario.vehicle.dof_names)
-    memory = BYTES_PER_SAMPLE * channels * journey.samples
+    else:
+        assert scenario.loads is not None
+        grid = SpectralGrid(samples=journey.samples, time_step=journey.time_step, truncation=journey.truncation)
+        channels = len(scenario.loads.positions) + len(scenario.loads.observe)
+    memory = BYTES_PER_SAMPLE * channels * grid.padded
     kept = f"{grid.kept} of them with the road" if journey.truncation is not None else "the truncation is found"
     return [
         ("speed", f"{journey.speed:g} m/s ({3.6 * journey.speed:g} km/h)"),

@@ -345,7 +345,7 @@ class _Builder:
         interval = SOME_INTERVAL
         if journey is not None and vehicle is not None:
             interval = journey.interval(vehicle)
-            if self._attempt("run:", lambda: journey.require_memory(vehicle)) is False:
+            if self._attempt("run:", lambda: journey.grid(vehicle)) is False:
                 return None
         road = self._section(tables, "roughness", "roughness", interval=interval)
         if vehicle is not None and road is not None and journey is not None:

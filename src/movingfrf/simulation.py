@@ -25,12 +25,13 @@ from movingfrf.version import VERSION
 if TYPE_CHECKING:
     import xarray as xr
 
-# Longest time that the padding is extended by for a vehicle that is slow to settle [s], and how far its slowest
-# vibration should have decayed by then.
-LONGEST_SETTLING, SETTLED = 60.0, 1e-2
+# How far the vehicle's slowest vibration should have decayed at the end of the padding; the padding for it is at
+# most so many times the duration, or so many steps.
+SETTLED, LONGEST_SETTLING, LEAST_SETTLING = 1e-2, 4.0, 2**16
 
-# Bytes per sample and channel (a contact or a degree of freedom) at the peak of a computation, measured.
-BYTES_PER_SAMPLE = 75
+# Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
+# computation, measured on an hour of travel.
+BYTES_PER_SAMPLE = 60
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,13 +91,23 @@ class Journey:
         positions = self.start + vehicle.positions
         return float(positions.min()), float(positions.max()) + self.speed * self.time_step * self.samples
 
-    def require_memory(self, vehicle: Vehicle) -> None:
-        """Refuse a journey whose result memory would not hold."""
-        channels = len(vehicle.contacts) + len(vehicle.dof_names)
-        require_memory(
-            BYTES_PER_SAMPLE * channels * self.samples,
-            f"a journey of {self.duration:g} s in steps of {self.time_step:g} s",
+    def grid(self, vehicle: Vehicle) -> SpectralGrid:
+        """Frequencies that stand for the journey, with padding for the vehicle to settle in.
+
+        Raises
+        ------
+        ValueError
+            If memory would not hold the result.
+        """
+        slowest = float((-vehicle.poles.real).min())
+        longest = max(LONGEST_SETTLING * self.duration, LEAST_SETTLING * self.time_step)
+        settling = min(-np.log(SETTLED) / slowest, longest) if slowest > 0 else longest
+        grid = SpectralGrid(
+            samples=self.samples, time_step=self.time_step, truncation=self.truncation, settling=settling
         )
+        channels = len(vehicle.contacts) + len(vehicle.dof_names)
+        _require_memory(grid, channels)
+        return grid
 
 
 def simulate(
@@ -175,9 +186,8 @@ def simulate(
     journey = Journey(
         speed=speed, duration=duration, start=start, time_step=time_step, truncation=truncation, blend=blend
     )
-    journey.require_memory(vehicle)
+    grid = journey.grid(vehicle)
     samples = journey.samples
-    grid = SpectralGrid(samples=samples, time_step=time_step, truncation=truncation, settling=_settling(vehicle))
     progress("profile", 0.0)
     excitation = excite(
         profile,
@@ -315,8 +325,10 @@ def moving_loads(
             check.not_negative("truncation", truncation, "Hz")
         if not check.faults and (len(forces) < 2 or not at.size or not points.size):
             check.refuse("force", "must have at least two samples, one load and one observation point")
-    require_memory(BYTES_PER_SAMPLE * (at.size + points.size) * len(forces), f"a record of {len(forces)} samples")
-    grid = SpectralGrid(samples=len(forces), time_step=time_step, truncation=truncation)
+    # What settles here is the guideway, in a time that is short beside that of any vehicle.
+    settling = len(forces) * time_step
+    grid = SpectralGrid(samples=len(forces), time_step=time_step, truncation=truncation, settling=settling)
+    _require_memory(grid, at.size + points.size)
     spectra = grid.to_spectra(forces)
     deflection = np.empty((points.size, grid.kept), complex).T
     for first in range(0, grid.kept, CHUNK):
@@ -350,10 +362,11 @@ def moving_loads(
     return labelled(values, LOADED, attributes)
 
 
-def _settling(vehicle: Vehicle) -> float:
-    """Time until the vehicle's slowest vibration has decayed [s], within reason."""
-    slowest = float((-vehicle.poles.real).min())
-    return min(-np.log(SETTLED) / slowest, LONGEST_SETTLING) if slowest > 0 else LONGEST_SETTLING
+def _require_memory(grid: SpectralGrid, channels: int) -> None:
+    require_memory(
+        BYTES_PER_SAMPLE * channels * grid.padded,
+        f"a record of {grid.samples * grid.time_step:g} s in steps of {grid.time_step:g} s",
+    )
 
 
 def _averaged(vehicle: Vehicle, spectra: np.ndarray, speed: float, grid: SpectralGrid) -> np.ndarray:

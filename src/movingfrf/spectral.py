@@ -17,7 +17,7 @@ WRAP_AROUND = 1e-4
 # Share of the padding within which the level of a record fades out after its end; the rest of the padding is for
 # the response to die away. Slope and curvature fade earlier: after so many times the ratio of the record's typical
 # slope to its typical curvature, at most the second share.
-SETTLE, TIMES_ITS_SCALE, FADE = 0.5, 12.0, 0.05
+SETTLE, TIMES_ITS_SCALE, FADE = 0.25, 12.0, 0.05
 
 # One-sided differences of fourth and third order for slope and curvature at the last sample (latest first).
 SLOPE = np.array([25 / 12, -4.0, 3.0, -4 / 3, 1 / 4])
@@ -73,8 +73,8 @@ class SpectralGrid:
 
     @property
     def padded(self) -> int:
-        """Length of the transform: the record, at least as much again, and a length that factorises."""
-        padding = max(self.samples, int(self.settling / (1 - SETTLE) / self.time_step), 8)
+        """Length of the transform: the record, time to settle, and what makes the length factorise."""
+        padding = max(self.samples // 8, int(self.settling / (1 - SETTLE) / self.time_step), 16)
         return int(scipy.fft.next_fast_len(self.samples + padding, real=True))
 
     @property
