@@ -76,10 +76,8 @@ class Checks:
         number = float(value)
         if not np.isfinite(number):
             self.refuse(name, f"must be {condition}, got {number!r} {unit}")
-        elif number and not SMALLEST <= abs(number) <= LARGEST:
-            self.refuse(
-                name, f"must be of a credible magnitude, {SMALLEST:g} to {LARGEST:g}, got {number!r} {unit}"
-            )
+        elif abs(number) > LARGEST:
+            self.refuse(name, f"must be of a credible magnitude, at most {LARGEST:g}, got {number!r} {unit}")
         else:
             return number
         return float("nan")
@@ -89,6 +87,8 @@ class Checks:
         number = self.finite(name, value, unit, "a positive number")
         if number <= 0:
             self.refuse(name, f"must be positive, got {number!r} {unit}")
+        elif number < SMALLEST:
+            self.refuse(name, f"must be of a credible magnitude, at least {SMALLEST:g}, got {number!r} {unit}")
         return number
 
     def not_negative(self, name: str, value: Any, unit: str) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from movingfrf._checks import ComplexArray, FloatArray, SolveError
+from movingfrf._checks import ComplexArray, SolveError
 from movingfrf.coupling import contact_frf
 from movingfrf.guideways.base import Guideway
 from movingfrf.vehicles.base import Vehicle
@@ -18,6 +18,9 @@ PER_DECADE, CLUSTER = 16, np.r_[-1, 1] * np.logspace(-6, -0.5, 8)[:, None]
 # Turns of the phase between neighbours that are still counted without a point between them, and how often an
 # interval may be halved.
 LARGEST_TURN, HALVINGS = 0.25 * np.pi, 24
+
+# Points with the smallest determinant from which a growing vibration is searched, to name it.
+SEARCHES = 12
 
 
 def determinant(guideway: Guideway, vehicle: Vehicle, speed: float, omega: ComplexArray) -> ComplexArray:
@@ -61,7 +64,7 @@ def growing_vibrations(guideway: Guideway, vehicle: Vehicle, speed: float) -> in
     int
         Zero for a stable system.
     """
-    _, values = _along_the_axis(guideway, vehicle, speed)
+    values = _along_the_axis(guideway, vehicle, speed)
     turned = np.angle(values[1:] / values[:-1]).sum()
     return max(round(-float(turned) / np.pi), 0)
 
@@ -81,18 +84,16 @@ def require_stable(guideway: Guideway, vehicle: Vehicle, speed: float) -> None:
     SolveError
         If a vibration grows, with its frequency and growth where they can be found.
     """
-    count = growing_vibrations(guideway, vehicle, speed)
-    if count:
-        path, values = _along_the_axis(guideway, vehicle, speed)
+    if growing_vibrations(guideway, vehicle, speed):
         raise SolveError(
             f"vehicle and guideway are unstable together at {speed:g} m/s: "
-            f"{_described(guideway, vehicle, speed, path[np.abs(values).argmin()])}; "
+            f"{_described(guideway, vehicle, speed)}; "
             "the motion feeds a vibration that grows without bound, so there is no steady response"
         )
 
 
-def _along_the_axis(guideway: Guideway, vehicle: Vehicle, speed: float) -> tuple[FloatArray, ComplexArray]:
-    """Frequencies from zero to far above the vehicle's poles, and the determinant without large turns."""
+def _along_the_axis(guideway: Guideway, vehicle: Vehicle, speed: float) -> ComplexArray:
+    """Follow the determinant from zero to far above the vehicle's poles, without large turns between points."""
     poles = np.abs(vehicle.poles)
     lowest, highest = 1e-2 * poles.min(), 1e2 * poles.max()
     base = np.geomspace(lowest, highest, int(np.log10(highest / lowest) * PER_DECADE) + 2)
@@ -105,20 +106,33 @@ def _along_the_axis(guideway: Guideway, vehicle: Vehicle, speed: float) -> tuple
         between = 0.5 * (path[wide] + path[wide + 1])
         path = np.insert(path, wide + 1, between)
         values = np.insert(values, wide + 1, determinant(guideway, vehicle, speed, between * (1 - 1j * BELOW_AXIS)))
-    return path, values
+    return values
 
 
-def _described(guideway: Guideway, vehicle: Vehicle, speed: float, near: float) -> str:
-    """Describe the growing vibration nearest to a frequency, found by the secant method in the lower half-plane."""
-    before, now = near * (1 - 0.01j), near * (1.001 - 0.02j)
+def _described(guideway: Guideway, vehicle: Vehicle, speed: float) -> str:
+    """Describe the fastest growing vibration: a zero of the determinant in the lower half-plane."""
+    magnitudes = np.abs(vehicle.poles)
+    across = np.geomspace(0.1 * magnitudes.min(), 10 * magnitudes.max(), 80)
+    omega = (across[:, None] * (1 - 1j * np.geomspace(1e-4, 2.0, 16))).ravel()
+    size = np.abs(determinant(guideway, vehicle, speed, omega))
+    zeros = [_zero(guideway, vehicle, speed, start) for start in omega[np.argsort(size)[:SEARCHES]]]
+    growing = [zero for zero in zeros if zero is not None]
+    if not growing:
+        return "a vibration grows"
+    fastest = min(growing, key=lambda zero: zero.imag)
+    return f"a vibration of {fastest.real / (2 * np.pi):.4g} Hz grows as e^({-fastest.imag:.4g} t)"
+
+
+def _zero(guideway: Guideway, vehicle: Vehicle, speed: float, start: complex) -> complex | None:
+    """Zero of the determinant near a point of the lower half-plane, by the secant method; None if it leaves."""
+    before, now = start, start * 1.001
     for _ in range(60):
         at_before, at_now = determinant(guideway, vehicle, speed, np.array([before, now]))
+        if abs(at_now) < 1e-10:
+            return now
         if at_now == at_before:
-            break
-        after = now - at_now * (now - before) / (at_now - at_before)
-        before, now = now, complex(after.real, min(after.imag, 0.0))
-        if abs(now - before) < 1e-10 * abs(now):
-            break
-    if abs(determinant(guideway, vehicle, speed, np.array([now]))[0]) < 1e-6 and now.imag < 0:
-        return f"a vibration of {abs(now.real) / (2 * np.pi):.4g} Hz grows by e^({-now.imag:.4g} t)"
-    return f"a vibration near {near / (2 * np.pi):.4g} Hz grows"
+            return None
+        before, now = now, complex(now - at_now * (now - before) / (at_now - at_before))
+        if now.imag >= 0 or not np.isfinite(now):
+            return None
+    return None

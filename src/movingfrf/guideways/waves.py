@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import comb
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +26,9 @@ AT_REST = 1e-13
 # is infinite.
 ROUNDING = np.finfo(float).eps
 REAL_WITHIN, MERGED_WITHIN = 1e6, 1e4
+
+# A root whose imaginary part is more than this share of its magnitude needs no such care.
+CLEARLY_OFF = 1e-3
 
 
 # Newton steps on a root: the last one moves it by less than this, and squares the error.
@@ -86,17 +89,7 @@ class Ratio:
         return Ratio(product(self.above, other.above), below)
 
 
-class Polynomials(NamedTuple):
-    """A polynomial in κ per frequency, and the sum of the magnitudes that were added to make it.
-
-    Here, and in all that follows, frequency is the last axis: it is long, the others are short.
-    """
-
-    coefficients: ComplexArray  # (power of κ, frequency), ascending
-    magnitudes: FloatArray
-
-
-def in_moving_frame(table: NumberArray, speed: float, omega: ComplexArray) -> Polynomials:
+def in_moving_frame(table: NumberArray, speed: float, omega: ComplexArray) -> ComplexArray:
     """Put p = i(ω − κv) into a table: one polynomial in κ for each frequency.
 
     Parameters
@@ -110,29 +103,29 @@ def in_moving_frame(table: NumberArray, speed: float, omega: ComplexArray) -> Po
 
     Returns
     -------
-    Polynomials
-        Coefficients of shape (power of κ, frequency), without leading powers that vanish.
+    ndarray, shape (power of κ, frequency)
+        Coefficients, ascending, without leading powers that vanish. Here, and in all that follows, frequency is
+        the last axis: it is long, the others are short.
     """
+    polynomials: ComplexArray = _expanded(table, 1j * omega, -1j * speed if abs(speed) > AT_REST else 0.0)
+    return polynomials
+
+
+def _expanded(table: NumberArray, constant: NumberArray, linear: complex) -> Any:
+    """Put p = constant + linear κ into a table, shape (power of κ, frequency)."""
     powers_kappa, powers_p = table.shape
-    speed = 0.0 if abs(speed) < AT_REST else speed
-    rows = powers_kappa + (powers_p - 1 if speed else 0)
-    coefficients = np.zeros((rows, omega.size), complex)
-    magnitudes = np.zeros((rows, omega.size))
-    i_omega = [np.ones_like(omega)]
-    size = [np.ones(omega.size)]
-    for _ in range(powers_p - 1):
-        i_omega.append(i_omega[-1] * (1j * omega))
-        size.append(size[-1] * np.abs(omega))
-    for a, b in np.argwhere(table):
-        for j in range(b + 1 if speed else 1):
-            factor = table[a, b] * comb(b, j) * (-1j * speed) ** j
-            coefficients[a + j] += factor * i_omega[b - j]
-            magnitudes[a + j] += abs(factor) * size[b - j]
-    degree = max((n for n in range(rows) if coefficients[n].any()), default=0)
-    return Polynomials(coefficients[: degree + 1], magnitudes[: degree + 1])
+    powers = [np.ones_like(constant), constant]
+    for _ in range(powers_p - 2):
+        powers.append(powers[-1] * constant)
+    expanded = np.zeros((powers_kappa + (powers_p - 1 if linear else 0), constant.size), constant.dtype)
+    for a, b in np.argwhere(table).tolist():
+        for j in range(b + 1 if linear else 1):
+            expanded[a + j] += (table[a, b] * comb(b, j) * linear**j) * powers[b - j]
+    degree = max((n for n, row in enumerate(expanded) if row.any()), default=0)
+    return expanded[: degree + 1]
 
 
-def evaluated(coefficients: NumberArray, at: NumberArray) -> NumberArray:
+def evaluated(coefficients: NumberArray, at: NumberArray) -> Any:
     """Values of the polynomials (power, frequency) at the points (point, frequency), by Horner's rule."""
     value = np.zeros_like(at) + coefficients[-1]
     for row in coefficients[-2::-1]:
@@ -247,23 +240,12 @@ def residue_sum(
     """
     with np.errstate(all="ignore"):
         denominator = in_moving_frame(stiffness.above, speed, omega)
-        numerator = in_moving_frame(stiffness.below, speed, omega)
-        kappa = wavenumbers(denominator.coefficients)
-        slope = evaluated(slopes(denominator.coefficients), kappa)
-        weight = 1j * evaluated(numerator.coefficients, kappa) / slope
+        kappa = wavenumbers(denominator)
+        slope: ComplexArray = evaluated(slopes(denominator), kappa)
+        weight = 1j * evaluated(in_moving_frame(stiffness.below, speed, omega), kappa) / slope
         if derivative:
             weight *= (1j * kappa) ** derivative
-        side = kappa.imag.copy()
-        rounding = ROUNDING * evaluated(denominator.magnitudes, np.abs(kappa))
-        doubtful = np.abs(side) * np.abs(slope) <= REAL_WITHIN * rounding
-        infinite: BoolArray = np.zeros(omega.size, bool)
-        if doubtful.any():
-            bend = evaluated(slopes(slopes(denominator.coefficients)), kappa)
-            merging = _squared(slope) <= MERGED_WITHIN * rounding * np.abs(bend)
-            infinite |= (doubtful & merging).any(axis=0)
-            # Im κ(ω − i0⁺) has the sign of Re(∂D/∂ω ÷ ∂D/∂κ).
-            by_omega = in_moving_frame(_by_omega(stiffness.above), speed, omega).coefficients
-            side = np.where(doubtful, (evaluated(by_omega, kappa) / slope).real, side)
+        side, infinite = _sides(stiffness.above, speed, omega, kappa, slope)
         frf = np.zeros((ahead.size, omega.size), complex)
         for forward in (True, False):
             here = (ahead >= 0) == forward
@@ -279,6 +261,24 @@ def residue_sum(
             " of the guideway, or values beyond floating-point range"
         )
     return frf
+
+
+def _sides(
+    table: FloatArray, speed: float, omega: ComplexArray, kappa: ComplexArray, slope: ComplexArray
+) -> tuple[FloatArray, BoolArray]:
+    """Tell on which side of the real axis each root lies (by sign), and at which frequencies two sides meet."""
+    side = kappa.imag
+    infinite: BoolArray = np.zeros(omega.size, bool)
+    # Not even a fourfold root is uncertain by as much as this, so most guideways need no closer look.
+    if (side * side > CLEARLY_OFF**2 * _squared(kappa)).all():
+        return side, infinite
+    rounding = ROUNDING * evaluated(_expanded(np.abs(table), np.abs(omega), abs(speed)), np.abs(kappa))
+    doubtful = np.abs(side) * np.abs(slope) <= REAL_WITHIN * rounding
+    # Im κ(ω − i0⁺) has the sign of Re(∂D/∂ω ÷ ∂D/∂κ).
+    by_omega = evaluated(in_moving_frame(_by_omega(table), speed, omega), kappa)
+    bend = evaluated(slopes(slopes(in_moving_frame(table, speed, omega))), kappa)
+    infinite |= (doubtful & (_squared(slope) <= MERGED_WITHIN * rounding * np.abs(bend))).any(axis=0)
+    return np.where(doubtful, (by_omega / slope).real, side), infinite
 
 
 def _by_omega(table: FloatArray) -> ComplexArray:

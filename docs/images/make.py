@@ -1,0 +1,30 @@
+"""Make the picture of the README: `python docs/images/make.py`."""
+
+from importlib.resources import files
+from pathlib import Path
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from movingfrf import plots
+from movingfrf.scenario import parse_scenario
+
+
+def main() -> None:
+    """Draw the reference case: contact forces and deflections, five seconds of them."""
+    text = files("movingfrf").joinpath("templates", "scenario.toml").read_text(encoding="utf-8")
+    result = parse_scenario(text).run()
+    figure = Figure(figsize=(9.6, 4.6), layout="constrained", dpi=110)
+    FigureCanvasAgg(figure)
+    above, below = figure.subplots(2, 1, sharex=True)
+    plots.contact_forces(result, above, interval=(12.0, 17.0))
+    plots.legend_above(above)
+    above.set_xlabel("")
+    plots.deflections(result, below, interval=(12.0, 17.0))
+    for axes in (above, below):
+        axes.spines[["top", "right"]].set_visible(False)
+    figure.savefig(Path(__file__).with_name("reference_case.png"), metadata={"Software": None})
+
+
+if __name__ == "__main__":
+    main()
