@@ -51,6 +51,8 @@ def polynomial(terms: dict[tuple[int, int], float]) -> FloatArray:
 
 def product(first: FloatArray, second: FloatArray) -> FloatArray:
     """Table of the product of two polynomials."""
+    if second.size == 1:
+        return first * second.item()
     table = np.zeros(np.array(first.shape) + second.shape - 1)
     for a, b in np.argwhere(first):
         table[a : a + second.shape[0], b : b + second.shape[1]] += first[a, b] * second
@@ -220,7 +222,7 @@ def residue_sum(
     stiffness : Ratio
         Dynamic stiffness of the guideway [N/m²].
     ahead : ndarray, shape (offset,)
-        Receiver minus source [m].
+        Receiver minus source [m], ascending and distinct.
     speed : float
         Common speed [m/s].
     omega : ndarray, shape (frequency,)
@@ -291,5 +293,8 @@ def _one_side(kappa: ComplexArray, weight: ComplexArray, chosen: BoolArray, ahea
     total = np.zeros((ahead.size, kappa.shape[1]), complex)
     for wave, belongs in enumerate(chosen):
         at: slice | IntArray = slice(None) if belongs.all() else np.flatnonzero(belongs)
-        total[:, at] += weight[wave, at] * np.exp(1j * kappa[wave, at] * ahead[:, None])
+        # Right at the source no wave has travelled; `ahead` is ascending, so that only its first entry can be zero.
+        resting = int(ahead[0] == 0)
+        total[:resting, at] += weight[wave, at]
+        total[resting:, at] += weight[wave, at] * np.exp(1j * kappa[wave, at] * ahead[resting:, None])
     return total
