@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 # most so many times the duration, or so many steps.
 SETTLED, LONGEST_SETTLING, LEAST_SETTLING = 1e-2, 4.0, 2**16
 
+# Frequencies beyond a truncation at which the response to prescribed loads is looked at.
+SAMPLES_BEYOND = 256
+
 # Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
 # computation, measured on an hour of travel.
 BYTES_PER_SAMPLE = 60
@@ -304,7 +307,8 @@ def moving_loads(
     Warns
     -----
     ValidityWarning
-        If the speed is near or above critical, or the response has not decayed.
+        If the speed is near or above critical, the response has not decayed, or there is content beyond the
+        truncation.
 
     Examples
     --------
@@ -336,12 +340,20 @@ def moving_loads(
         frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(slice(first, last)))
         deflection[first:last] = (frf @ spectra[first:last, :, None])[:, :, 0]
         progress("moving FRF", last / grid.kept)
+    # Beyond the truncation every so-many-th frequency tells how much is left out.
+    stride = (grid.size - grid.kept) // SAMPLES_BEYOND + 1
+    beyond = np.arange(grid.kept, grid.size, stride)
+    frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(beyond))
+    left_out = stride * (np.abs((frf @ spectra[beyond][:, :, None])[:, :, 0]) ** 2).sum(axis=0)
+    whole = (np.abs(deflection) ** 2).sum(axis=0) + left_out
+    error = float(np.sqrt(np.divide(left_out, whole, out=np.zeros_like(whole), where=whole > 0).max()))
     progress("histories", 0.0)
     response = grid.to_histories(deflection)
     critical_speed = float(guideway.critical_speed)
     found = [
         *find.near_critical(abs(speed), critical_speed),
         *find.not_decayed("deflection", response.remainder, response.values),
+        *find.beyond_truncation(truncation or 0.0, error),
     ]
     values = {
         "time": grid.time,
@@ -355,6 +367,7 @@ def moving_loads(
         "speed": float(speed),
         "time_step": float(time_step),
         "truncation": 0.5 / time_step if truncation is None else float(truncation),
+        "truncation_error": error,
         "critical_speed": critical_speed,
         "guideway": repr(guideway),
         "findings": find.announced(found),

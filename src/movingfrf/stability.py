@@ -17,7 +17,10 @@ PER_DECADE, CLUSTER = 16, np.r_[-1, 1] * np.logspace(-6, -0.5, 8)[:, None]
 
 # Turns of the phase between neighbours that are still counted without a point between them, and how often an
 # interval may be halved.
-LARGEST_TURN, HALVINGS = 0.25 * np.pi, 24
+LARGEST_TURN, HALVINGS, MOST_POINTS = 0.25 * np.pi, 24, 20_000
+
+# Natural frequencies further apart than this ratio leave no digits to the lower ones.
+WIDEST = 1e-9
 
 # Points with the smallest determinant from which a growing vibration is searched, to name it.
 SEARCHES = 12
@@ -95,13 +98,18 @@ def require_stable(guideway: Guideway, vehicle: Vehicle, speed: float) -> None:
 def _along_the_axis(guideway: Guideway, vehicle: Vehicle, speed: float) -> ComplexArray:
     """Follow the determinant from zero to far above the vehicle's poles, without large turns between points."""
     poles = np.abs(vehicle.poles)
+    if not poles.min() > WIDEST * poles.max():
+        raise SolveError(
+            f"the vehicle's natural frequencies, from {poles.min() / (2 * np.pi):.3g} to "
+            f"{poles.max() / (2 * np.pi):.3g} Hz, lie too far apart to be computed together at {speed:g} m/s"
+        )
     lowest, highest = 1e-2 * poles.min(), 1e2 * poles.max()
     base = np.geomspace(lowest, highest, int(np.log10(highest / lowest) * PER_DECADE) + 2)
     path = np.unique(np.concatenate([[0.0], base, (poles * (1 + CLUSTER.reshape(-1, 1))).ravel()]))
     values = determinant(guideway, vehicle, speed, path * (1 - 1j * BELOW_AXIS))
     for _ in range(HALVINGS):
         wide = np.flatnonzero(np.abs(np.angle(values[1:] / values[:-1])) > LARGEST_TURN)
-        if not wide.size:
+        if not wide.size or path.size > MOST_POINTS:
             break
         between = 0.5 * (path[wide] + path[wide + 1])
         path = np.insert(path, wide + 1, between)
