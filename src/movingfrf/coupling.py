@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._checks import ComplexArray, FloatArray, SolveError
 from movingfrf.guideways.base import Guideway
 from movingfrf.spectral import SpectralGrid
-from movingfrf.vehicles.base import Vehicle
+from movingfrf.vehicles.base import Modes, Vehicle
 
 # Frequencies solved at a time: their arrays stay within the processor's cache.
 CHUNK = 4096
@@ -63,15 +65,86 @@ class CoupledSpectra:
     motion: ComplexArray
 
 
-def offsets(positions: FloatArray) -> FloatArray:
-    """Receiver minus source for every pair of contacts, shape (receiver, source) [m]."""
-    return positions[:, None] - positions
+class Sample(NamedTuple):
+    """Both sides of the contacts at some frequencies."""
+
+    omega: ComplexArray  # (frequency,)
+    frf: ComplexArray  # (frequency, receiver, source) [m/N]
+    stiffness: ComplexArray  # (frequency, contact, contact) [N/m]
+
+    def determinants(self) -> ComplexArray:
+        """det(I + D G): its zeros are the poles of the coupled system."""
+        values: ComplexArray = np.linalg.det(np.eye(self.frf.shape[1]) + product(self.stiffness, self.frf))
+        return values
 
 
-def contact_frf(guideway: Guideway, vehicle: Vehicle, speed: float, omega: ComplexArray) -> ComplexArray:
-    """Evaluate the moving FRF between all contacts, shape (frequency, receiver, source) [m/N]."""
-    across = offsets(np.array([contact.across for contact in vehicle.contacts]))
-    return guideway.moving_frf(offsets(vehicle.positions), speed, omega, across=across)
+@dataclass(frozen=True, slots=True, eq=False)
+class System:
+    """A guideway and a vehicle that travels on it; made by `joined`.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road.
+    vehicle : Vehicle
+        The vehicle.
+    speed : float
+        Speed [m/s].
+    modes : Modes or None
+        What `vehicle.modes()` returns, computed once.
+    """
+
+    guideway: Guideway
+    vehicle: Vehicle
+    speed: float
+    modes: Modes | None
+
+    def sample(self, omega: ComplexArray) -> Sample:
+        """Evaluate both sides at some frequencies [rad/s]."""
+        contacts = self.vehicle.contacts
+        frf = self.guideway.moving_frf(
+            _offsets([contact.position for contact in contacts]),
+            self.speed,
+            omega,
+            across=_offsets([contact.across for contact in contacts]),
+        )
+        return Sample(omega, frf, self.vehicle.dynamic_stiffness(omega, self.modes))
+
+    def samples(self, *omegas: ComplexArray) -> list[Sample]:
+        """Evaluate both sides at several sets of frequencies [rad/s] in one go."""
+        ends = np.cumsum([0, *(omega.size for omega in omegas)])
+        whole = self.sample(np.concatenate(omegas))
+        return [Sample(*(part[first:last] for part in whole)) for first, last in pairwise(ends)]
+
+    def motion(self, omega: ComplexArray, displacement: ComplexArray) -> ComplexArray:
+        """Motion of the vehicle (frequency, dof) that is displaced below its contacts (frequency, contact)."""
+        return self.vehicle.motion(omega, self.vehicle.contact_stiffness(omega) * displacement, self.modes)
+
+
+def joined(guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
+    """Put a vehicle on a guideway.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road.
+    vehicle : Vehicle
+        The vehicle.
+    speed : float
+        Speed [m/s].
+
+    Returns
+    -------
+    System
+        The two together.
+    """
+    return System(guideway, vehicle, speed, vehicle.modes())
+
+
+def _offsets(places: list[float]) -> FloatArray:
+    """Receiver minus source for every pair, shape (receiver, source) [m]."""
+    at = np.array(places)
+    return at[:, None] - at
 
 
 def solve_contacts(frf: ComplexArray, stiffness: ComplexArray, gap: ComplexArray) -> ComplexArray:
@@ -115,17 +188,15 @@ def product(left: ComplexArray, right: ComplexArray) -> ComplexArray:
     return np.add.reduce([left[:, :, j, None] * right[:, j, None, :] for j in range(left.shape[2])])
 
 
-def steady_state(guideway: Guideway, vehicle: Vehicle, speed: float) -> SteadyState:
+def steady_state(system: System, at_rest: Sample) -> SteadyState:
     """Steady travel on a smooth road.
 
     Parameters
     ----------
-    guideway : Guideway
-        The road.
-    vehicle : Vehicle
-        The vehicle.
-    speed : float
-        Speed [m/s].
+    system : System
+        Vehicle and road.
+    at_rest : Sample
+        Both sides at ω = 0.
 
     Returns
     -------
@@ -133,21 +204,13 @@ def steady_state(guideway: Guideway, vehicle: Vehicle, speed: float) -> SteadySt
         Loads and deflections. With more contacts than rigid motions the sag of the road redistributes the
         weight: (I + D G) F₀ = F_s at ω = 0.
     """
-    rest = np.zeros(1, complex)
-    frf = contact_frf(guideway, vehicle, speed, rest)[0].real
-    stiffness = vehicle.dynamic_stiffness(rest, None)[0].real
-    load = np.linalg.solve(np.eye(len(frf)) + stiffness @ frf, vehicle.static_loads)
+    frf, stiffness = at_rest.frf[0].real, at_rest.stiffness[0].real
+    load = np.linalg.solve(np.eye(len(frf)) + stiffness @ frf, system.vehicle.static_loads)
     return SteadyState(load=load, deflection=frf @ load)
 
 
 def couple(
-    guideway: Guideway,
-    vehicle: Vehicle,
-    roughness: ComplexArray,
-    *,
-    speed: float,
-    grid: SpectralGrid,
-    progress: Progress = silent,
+    system: System, roughness: ComplexArray, *, grid: SpectralGrid, progress: Progress = silent
 ) -> CoupledSpectra:
     """Couple guideway and vehicle over a rough road.
 
@@ -156,14 +219,10 @@ def couple(
 
     Parameters
     ----------
-    guideway : Guideway
-        The road.
-    vehicle : Vehicle
-        The vehicle.
+    system : System
+        Vehicle and road.
     roughness : ndarray, shape (frequency, contact)
         Spectra of the elevation under the contacts [m s].
-    speed : float
-        Speed [m/s].
     grid : SpectralGrid
         Frequencies and truncation.
     progress : callable
@@ -179,31 +238,31 @@ def couple(
     SolveError
         If a result is not finite.
     """
-    contacts, dofs = len(vehicle.contacts), len(vehicle.dof_names)
-    modes = vehicle.modes()
+    vehicle = system.vehicle
     contact_map = vehicle.matrices[3]
     # One channel after the other in memory, as the transforms read them.
-    deflection = np.empty((contacts, grid.kept), complex).T
-    force = np.empty((contacts, grid.size), complex).T
-    motion = np.empty((dofs, grid.size), complex).T
+    deflection = np.empty((len(vehicle.contacts), grid.kept), complex).T
+    force = np.empty((len(vehicle.contacts), grid.size), complex).T
+    motion = np.empty((len(vehicle.dof_names), grid.size), complex).T
     for first in range(0, grid.size, CHUNK):
         last = min(first + CHUNK, grid.size)
         omega = grid.omega(slice(first, last))
         displacement = -roughness[first:last]
         kept = max(min(last, grid.kept) - first, 0)
         if kept:
-            solved = omega[:kept]
-            frf = contact_frf(guideway, vehicle, speed, solved)
-            stiffness = vehicle.dynamic_stiffness(solved, modes)
+            _, frf, stiffness = system.sample(omega[:kept])
             forces = solve_contacts(frf, stiffness, roughness[first : first + kept, :, None])
             deflection[first : first + kept] = product(frf, forces)[:, :, 0]
             displacement[:kept] += deflection[first : first + kept]
         springs = vehicle.contact_stiffness(omega)
         displacement *= springs
-        moved = vehicle.motion(omega, displacement, modes)
+        moved = vehicle.motion(omega, displacement, system.modes)
         motion[first:last] = moved
         force[first:last] = springs * (contact_map @ moved.T).T - displacement
         progress("coupling", last / grid.size)
-    if not all(np.isfinite(part).all() for part in (deflection, force, motion)):
-        raise SolveError(f"the coupled response at {speed:g} m/s exceeds the range of floating-point numbers")
+    # A sum is finite only if all of its terms are.
+    if not all(np.isfinite(part.sum()) for part in (deflection, force, motion)):
+        raise SolveError(
+            f"the coupled response at {system.speed:g} m/s exceeds the range of floating-point numbers"
+        )
     return CoupledSpectra(force=force, deflection=deflection, motion=motion)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from movingfrf.coupling import steady_state
+from movingfrf.coupling import joined, steady_state
 from movingfrf.roughness.profiles import Profile
 from movingfrf.roughness.spectra import fit_iso, iso_class, welch
 from movingfrf.scenario import Scenario
@@ -50,7 +50,8 @@ def _guideway(scenario: Scenario) -> list[tuple[str, str]]:
 def _vehicle(scenario: Scenario) -> list[tuple[str, str]]:
     vehicle = scenario.vehicle
     assert vehicle is not None
-    steady = steady_state(scenario.guideway, vehicle, scenario.journey.speed)
+    system = joined(scenario.guideway, vehicle, scenario.journey.speed)
+    steady = steady_state(system, system.sample(np.zeros(1, complex)))
     modes = zip(vehicle.natural_frequencies, vehicle.damping_ratios, strict=True)
     return [
         ("degrees of freedom", ", ".join(vehicle.dof_names)),

@@ -61,7 +61,7 @@ def near_critical(speed: float, critical_speed: float) -> list[Finding]:
 
 def not_decayed(name: str, remainder: FloatArray, values: FloatArray) -> list[Finding]:
     """Remainder at the end of the padding, shape (channel,), against records of shape (time, channel)."""
-    size = np.sqrt(np.mean(values**2, axis=0))
+    size = np.sqrt([channel @ channel / len(channel) for channel in values.T])
     left = np.divide(remainder * WRAP_AROUND, size, out=np.zeros_like(size), where=size > 0).max(initial=0.0)
     if left <= TOLERATED:
         return []
@@ -89,7 +89,7 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
 
 def beyond_nyquist(roughness: ComplexArray, grid: SpectralGrid) -> list[Finding]:
     """Roughness spectra, shape (frequency, contact), that reach up to the Nyquist frequency."""
-    squared = grid.omega().real ** 2
+    squared = np.arange(len(roughness), dtype=float) ** 2
     first = int(0.9 * grid.size)
     share = 0.0
     for spectrum in roughness.T:

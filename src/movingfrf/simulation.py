@@ -10,15 +10,15 @@ from numpy.typing import ArrayLike
 
 import movingfrf.findings as find
 from movingfrf._checks import checking, require_memory
-from movingfrf.coupling import CHUNK, Progress, couple, silent, steady_state
+from movingfrf.coupling import CHUNK, Progress, couple, joined, silent, steady_state
 from movingfrf.guideways.base import Guideway
 from movingfrf.response import histories
 from movingfrf.roughness.excitation import excite
 from movingfrf.roughness.profiles import Profile
 from movingfrf.schema import COUPLED, LOADED, labelled
 from movingfrf.spectral import SpectralGrid
-from movingfrf.stability import require_stable
-from movingfrf.truncation import first_negligible, influence, truncation_error
+from movingfrf.stability import along_the_axis, require_stable
+from movingfrf.truncation import bands, first_negligible, influence, middles, truncation_error
 from movingfrf.vehicles.base import Vehicle
 from movingfrf.version import VERSION
 
@@ -105,12 +105,11 @@ class Journey:
         slowest = float((-vehicle.poles.real).min())
         longest = max(LONGEST_SETTLING * self.duration, LEAST_SETTLING * self.time_step)
         settling = min(-np.log(SETTLED) / slowest, longest) if slowest > 0 else longest
-        grid = SpectralGrid(
+        channels = len(vehicle.contacts) + len(vehicle.dof_names)
+        _require_memory(self.duration, settling, self.time_step, channels)
+        return SpectralGrid(
             samples=self.samples, time_step=self.time_step, truncation=self.truncation, settling=settling
         )
-        channels = len(vehicle.contacts) + len(vehicle.dof_names)
-        _require_memory(grid, channels)
-        return grid
 
 
 def simulate(
@@ -206,15 +205,20 @@ def simulate(
     roughness = _averaged(vehicle, spectra, speed, grid)
 
     progress("steady state", 0.0)
-    steady = steady_state(guideway, vehicle, speed)
-    require_stable(guideway, vehicle, speed)
-    part = influence(guideway, vehicle, roughness, speed=speed, grid=grid)
+    system = joined(guideway, vehicle, speed)
+    starts = bands(grid)
+    at_rest, along_axis, in_bands = system.samples(
+        np.zeros(1, complex), along_the_axis(vehicle, speed), middles(starts, grid)
+    )
+    steady = steady_state(system, at_rest)
+    require_stable(system, along_axis)
+    part = influence(system, starts, in_bands, roughness)
     if truncation is None:
         kept = first_negligible(part, roughness)
         grid = replace(grid, truncation=max(kept - 1, 0) / (grid.padded * time_step))
     error = truncation_error(part, grid.kept)
 
-    coupled = couple(guideway, vehicle, roughness, speed=speed, grid=grid, progress=progress)
+    coupled = couple(system, roughness, grid=grid, progress=progress)
     progress("histories", 0.0)
     response = histories(coupled, grid)
     critical_speed = float(guideway.critical_speed)
@@ -331,8 +335,8 @@ def moving_loads(
             check.refuse("force", "must have at least two samples, one load and one observation point")
     # What settles here is the guideway, in a time that is short beside that of any vehicle.
     settling = len(forces) * time_step
+    _require_memory(settling, settling, time_step, at.size + points.size)
     grid = SpectralGrid(samples=len(forces), time_step=time_step, truncation=truncation, settling=settling)
-    _require_memory(grid, at.size + points.size)
     spectra = grid.to_spectra(forces)
     deflection = np.empty((points.size, grid.kept), complex).T
     for first in range(0, grid.kept, CHUNK):
@@ -375,10 +379,10 @@ def moving_loads(
     return labelled(values, LOADED, attributes)
 
 
-def _require_memory(grid: SpectralGrid, channels: int) -> None:
+def _require_memory(duration: float, settling: float, time_step: float, channels: int) -> None:
     require_memory(
-        BYTES_PER_SAMPLE * channels * grid.padded,
-        f"a record of {grid.samples * grid.time_step:g} s in steps of {grid.time_step:g} s",
+        BYTES_PER_SAMPLE * channels * (duration + settling) / time_step,
+        f"a record of {duration:g} s in steps of {time_step:g} s",
     )
 
 

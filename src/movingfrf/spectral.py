@@ -19,6 +19,9 @@ WRAP_AROUND = 1e-4
 # slope to its typical curvature, at most the second share.
 SETTLE, TIMES_ITS_SCALE, FADE = 0.25, 12.0, 0.05
 
+# Samples before the end of a record that tell how fast it varies.
+LATELY = 4096
+
 # Channels transformed at a time: as many as a processor's vector holds numbers.
 TOGETHER = 4
 
@@ -28,7 +31,7 @@ CURVATURE = np.array([35 / 12, -26 / 3, 19 / 2, -14 / 3, 11 / 12])
 
 
 class Histories(NamedTuple):
-    """Records, and what is left of each at the end of the padding: it wraps around `WRAP_AROUND` weaker."""
+    """Records, and what is left of each near the end of the padding: it wraps around `WRAP_AROUND` weaker."""
 
     values: FloatArray  # (time, channel)
     remainder: FloatArray  # (channel,)
@@ -153,7 +156,8 @@ class SpectralGrid:
         Returns
         -------
         Histories
-            Records of shape (time, channel), and the largest value in the last hundredth of the padding.
+            Records of shape (time, channel), and the largest value within a hundredth of the period near its end
+            (not at the very end, where the ripple that precedes a jump at t = 0 lies).
         """
         histories = np.empty((spectra.shape[1], self.samples))
         remainder = np.empty(spectra.shape[1])
@@ -165,7 +169,9 @@ class SpectralGrid:
             block = spectra.T[some] if factor is None else spectra.T[some] * factor
             periodic = scipy.fft.irfft(block, self.padded)
             np.multiply(periodic[:, : self.samples], growth, out=histories[some])
-            remainder[some] = np.abs(periodic[:, -last:]).max(axis=1) / (self.time_step * WRAP_AROUND)
+            remainder[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / (
+                self.time_step * WRAP_AROUND
+            )
         return Histories(histories.T, remainder)
 
     def _continuation(self, history: FloatArray) -> FloatArray:
@@ -185,7 +191,7 @@ class SpectralGrid:
 
     def _memory(self, history: FloatArray) -> int:
         """Count the samples over which slope and curvature fade: enough not to add frequencies."""
-        steps = np.diff(history)
+        steps = np.diff(history[-LATELY:])
         bends = np.diff(steps)
         bend, step = float(bends @ bends), float(steps @ steps)
         longest = (self.padded - self.samples) * FADE
