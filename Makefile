@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 SCENARIO := out/demo.toml
 
-.PHONY: demo test test-slow bench faults lint format clean
+.PHONY: demo test bench faults lint format clean
 
 demo: $(READY)
 	@mkdir -p out
@@ -15,9 +15,6 @@ demo: $(READY)
 
 test: $(READY) lint
 	$(BIN)/pytest -q
-
-test-slow: $(READY)
-	$(BIN)/pytest -q -m slow
 
 lint: $(READY)
 	$(BIN)/ruff check .
@@ -37,9 +34,10 @@ faults: $(READY)
 # An editable install, redone when the dependencies change. The mark is set last: an interrupted
 # installation is taken up again.
 $(READY): pyproject.toml
-	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "movingfrf needs Python 3.11 or newer: make PYTHON=python3.11 ...")'
-	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "movingfrf needs Python 3.11 or newer: make PYTHON=python3.11 ...")'
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@echo "installing into $(VENV)"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch $(READY)
 
 clean:

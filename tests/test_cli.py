@@ -47,6 +47,8 @@ def test_new_check_run(tmp_path, capsys):
 def test_new_prints_without_a_file_and_protects_what_exists(tmp_path, capsys):
     assert main(["new"]) == 0
     assert "[guideway.beam]" in capsys.readouterr().out
+    assert main(["new", "--loads"]) == 0
+    assert "[[loads.force]]" in capsys.readouterr().out
     (tmp_path / "mine.toml").write_text("mine")
     assert main(["new", str(tmp_path / "mine.toml")]) == 2
     assert (tmp_path / "mine.toml").read_text() == "mine"

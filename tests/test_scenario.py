@@ -38,6 +38,9 @@ duration = 2.0
 """
 
 
+LOADS_TEMPLATE = files("movingfrf").joinpath("templates", "loads.toml").read_text(encoding="utf-8")
+
+
 def faults(text, **where):
     with pytest.raises(mf.ScenarioError) as caught:
         parse_scenario(text, **where)
@@ -93,6 +96,14 @@ def test_loads_from_a_scenario_are_the_same_call_as_in_python():
     road = parse_scenario(TEMPLATE).guideway
     direct = mf.moving_loads(road, force, [0.0, -2.5], speed=10.0, observe=[0.0, 1.0, -2.5])
     assert np.allclose(result.deflection, direct.deflection, atol=1e-15)
+
+
+def test_the_template_of_loads_runs():
+    result = parse_scenario(LOADS_TEMPLATE).run()
+    assert result.force.shape == (10_000, 2)
+    assert result.deflection.shape == (10_000, 3)
+    # Under the constant load by itself the reference road gives way by 3.737 mm; the other load adds to it.
+    assert 3.5e-3 < result.deflection[7000, 0].item() < 4.5e-3
 
 
 def test_forces_from_a_file(tmp_path):

@@ -38,7 +38,8 @@ app = App(
 
     A scenario file says which vehicle drives over which road, and how rough it is:
 
-    1. movingfrf new truck.toml writes one to start from, with a comment and a unit on every line.
+    1. movingfrf new truck.toml writes one to start from, with a comment and a unit on every line
+    (--loads: prescribed forces instead of a vehicle).
 
     2. movingfrf check truck.toml says what it describes: natural frequencies, critical speed, roughness class.
 
@@ -50,17 +51,20 @@ app = App(
 
 
 @app.command
-def new(file: Path | None = None, /, *, force: bool = False) -> None:
-    """Write a commented scenario to start from: a half truck on a class A road.
+def new(file: Path | None = None, /, *, loads: bool = False, force: bool = False) -> None:
+    """Write a commented scenario to start from: a half truck on a class A road, or prescribed loads.
 
     Parameters
     ----------
     file
         The file to write; without it the scenario goes to standard output.
+    loads
+        Prescribed forces that travel along, instead of a vehicle.
     force
         Replace the file if it exists and differs.
     """
-    text = files("movingfrf").joinpath("templates", "scenario.toml").read_text(encoding="utf-8")
+    template = "loads.toml" if loads else "scenario.toml"
+    text = files("movingfrf").joinpath("templates", template).read_text(encoding="utf-8")
     if file is None:
         sys.stdout.write(text)
         return
