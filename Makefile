@@ -10,7 +10,7 @@ SCENARIO := out/demo.toml
 
 demo: $(READY)
 	@mkdir -p out
-	@$(BIN)/movingfrf new $(SCENARIO)
+	@$(BIN)/movingfrf new $(SCENARIO) --force
 	@$(BIN)/movingfrf run $(SCENARIO) --output out/demo
 
 test: $(READY) lint
@@ -26,7 +26,7 @@ format: $(READY)
 	$(BIN)/ruff format .
 
 bench: $(READY)
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.bench
+	$(BIN)/python -m benchmarks.bench
 
 faults: $(READY)
 	$(BIN)/python -m tests.faults

@@ -32,9 +32,10 @@ def histories(spectra: CoupledSpectra, grid: SpectralGrid) -> Response:
     Response
         Dynamic force [N], deflection [m], motion [m or rad] and acceleration [m/s² or rad/s²].
     """
+    scratch = grid.scratch()
     return Response(
-        grid.to_histories(spectra.force),
-        grid.to_histories(spectra.deflection),
-        grid.to_histories(spectra.motion),
-        grid.to_histories(spectra.motion, derivative=2),
+        grid.to_histories(spectra.force, scratch=scratch),
+        grid.to_histories(spectra.deflection, scratch=scratch),
+        grid.to_histories(spectra.motion, scratch=scratch),
+        grid.to_histories(spectra.motion, derivative=2, scratch=scratch),
     )

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 # How far the vehicle's slowest vibration should have decayed at the end of the padding; the padding for it is at
 # most so many times the duration, or so many steps.
-SETTLED, LONGEST_SETTLING, LEAST_SETTLING = 1e-2, 4.0, 2**16
+SETTLED, LONGEST_SETTLING, LEAST_SETTLING = 3e-2, 4.0, 2**16
 
 # Frequencies beyond a truncation at which the response to prescribed loads is looked at.
 SAMPLES_BEYOND = 256

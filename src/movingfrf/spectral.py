@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.fft
+from numpy.typing import NDArray
 
 from movingfrf._checks import ComplexArray, FloatArray, IntArray, checking
 
@@ -140,10 +141,16 @@ class SpectralGrid:
             # A jump at t = 0 is centred there: half of its first sample lies before it.
             padded[:, 0] *= 0.5
             padded *= window
-            spectra[first : first + TOGETHER] = scipy.fft.rfft(padded, overwrite_x=True)
+            np.fft.rfft(padded, out=spectra[first : first + TOGETHER])
         return spectra.T
 
-    def to_histories(self, spectra: ComplexArray, *, derivative: int = 0) -> Histories:
+    def scratch(self) -> NDArray[np.float64]:
+        """Memory for `to_histories` to work in: fresh pages cost more than a transform."""
+        return np.empty((TOGETHER, self.padded))
+
+    def to_histories(
+        self, spectra: ComplexArray, *, derivative: int = 0, scratch: NDArray[np.float64] | None = None
+    ) -> Histories:
         """Transform spectra, or their derivatives in time, back to records; the inverse of `to_spectra`.
 
         Parameters
@@ -152,6 +159,8 @@ class SpectralGrid:
             Spectra along ω − iη; frequencies beyond the last row are zero.
         derivative : int
             Order of the derivative with respect to time.
+        scratch : ndarray, optional
+            What `scratch()` returned, to be used again for several calls.
 
         Returns
         -------
@@ -162,12 +171,13 @@ class SpectralGrid:
         histories = np.empty((spectra.shape[1], self.samples))
         remainder = np.empty(spectra.shape[1])
         last = self.padded // 100 + 1
+        memory = self.scratch() if scratch is None else scratch
         factor = (1j * self.omega(slice(len(spectra)))) ** derivative if derivative else None
         growth = np.exp(self.decay * self.time_step * np.arange(self.samples)) / self.time_step
         for first in range(0, len(histories), TOGETHER):
             some = slice(first, first + TOGETHER)
             block = spectra.T[some] if factor is None else spectra.T[some] * factor
-            periodic = scipy.fft.irfft(block, self.padded)
+            periodic = np.fft.irfft(block, self.padded, out=memory[: len(block)])
             np.multiply(periodic[:, : self.samples], growth, out=histories[some])
             remainder[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / (
                 self.time_step * WRAP_AROUND

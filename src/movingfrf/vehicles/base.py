@@ -280,10 +280,13 @@ def _admittance(omega: ComplexArray, poles: ComplexArray) -> ComplexArray:
     """1/(iω − λ) for every pole λ, shape (mode, frequency); complex division would take most of the time."""
     real = (1j * omega).real - poles.real[:, None]
     imaginary = (1j * omega).imag - poles.imag[:, None]
-    inverse = 1.0 / (real * real + imaginary * imaginary)
+    inverse = np.square(real)
+    inverse += np.square(imaginary)
+    np.reciprocal(inverse, out=inverse)
     admittance = np.empty(inverse.shape, complex)
     np.multiply(real, inverse, out=admittance.real)
-    np.multiply(imaginary, -inverse, out=admittance.imag)
+    np.negative(inverse, out=inverse)
+    np.multiply(imaginary, inverse, out=admittance.imag)
     return admittance
 
 
