@@ -142,7 +142,7 @@ FAULTS = [
     Fault("waviness ignored", "roughness/spectra.py", "power = 1 - self.waviness", "power = 1 - 2.0"),
     Fault("seed ignored", "roughness/profiles.py", "default_rng(seed)", "default_rng(0)"),
     Fault("second path is the first", "roughness/profiles.py", "elevation[:, path]", "elevation[:, 0]"),
-    Fault("datum left in", "roughness/excitation.py", "seen -= datum", "pass"),
+    Fault("datum left in", "roughness/excitation.py", "seen -= datums[path]", "pass"),
     Fault("blend twice as long", "roughness/excitation.py", "- foremost) / blend", "- foremost) / (2 * blend)"),
     Fault(
         "each wheel blends from its own start",

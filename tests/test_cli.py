@@ -74,6 +74,17 @@ def test_the_result_reopens_equal_and_equal_input_gives_equal_bytes(scenario, tm
     assert force["units"] == "N"
 
 
+def test_names_with_brackets_and_colons(tmp_path, capsys):
+    file = tmp_path / "a [red]x [b] :smile:.toml"
+    assert main(["new", str(file)]) == 0
+    file.write_text(SHORT)
+    assert main(["check", str(file)]) == 0
+    assert main(["run", str(file), "--output", str(tmp_path / "o [/b]")]) == 0
+    told = capsys.readouterr().out
+    assert str(file) in told
+    assert str(tmp_path / "o [/b]" / "result.nc") in told
+
+
 def test_prescribed_loads_run_too(tmp_path, capsys):
     file = tmp_path / "loads.toml"
     file.write_text(LOADS)

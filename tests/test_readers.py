@@ -47,6 +47,7 @@ def test_several_paths(tmp_path):
         ("0,1\n1,2\n1,3\n2,4\n", "distance must increase, got 1 m followed by 1 m at index 2"),
         ("0,1\n1,2\n2,nan\n3,4\n", "elevation must be finite"),
         ("0,1\n1,2\n2,3\n", "at least 4 stations"),
+        ("0,5.8o3\n1,2\n2,3\n3,4\n4,5\n", "line 1: expected numbers"),
     ],
 )
 def test_faulty_columns(tmp_path, text, message):

@@ -232,6 +232,35 @@ def test_files_that_are_no_scenario(tmp_path):
         mf.read_scenario(tmp_path)
 
 
+@pytest.mark.parametrize(
+    ("text", "name", "message"),
+    [
+        (LOADS.replace("ramp = 0.2", 'ramp = "x"'), "loads.force[0].ramp", "got 'x'"),
+        (LOADS.replace("switch_off = 1.5", "switch_off = 0.1"), "loads.force[1].switch_off", "leave time"),
+        (LOADS[: LOADS.index("[[loads.force]]")] + LOADS[LOADS.index("[run]") :], "loads.force", "is missing"),
+        (LOADS.replace("duration = 2.0", "duration = 1e9"), "run:", "GiB of memory"),
+        (LOADS.replace("observe = [0.0, 1.0, -2.5]", 'observe = ["1", "2"]'), "loads.observe", "array of numbers"),
+        (LOADS.replace("observe = [0.0, 1.0, -2.5]", "observe = [true]"), "loads.observe", "array of numbers"),
+        (LOADS + "\n[vehicle]\n", "vehicle", "exclude each other"),
+        (edited(speed="9" * 400), "run.speed", "got inf m/s"),
+        (edited(speed="9" * 5001), "the text", "is not TOML"),
+        (
+            TEMPLATE[: TEMPLATE.index("[roughness]")]
+            + '[roughness]\nkind = "profile"\n[run]\nspeed = 1.0\nduration = 1.0',
+            "roughness.file",
+            "is missing",
+        ),
+    ],
+)
+def test_more_impossible_scenarios(text, name, message):
+    assert message in faults(text)[name]
+
+
+def test_a_byte_order_mark_is_no_fault(tmp_path):
+    (tmp_path / "a.toml").write_bytes(TEMPLATE.encode("utf-8-sig"))
+    assert mf.read_scenario(tmp_path / "a.toml").journey.speed == 10.0
+
+
 def test_a_profile_shorter_than_the_journey(tmp_path):
     (tmp_path / "short.csv").write_text("\n".join(f"{x},0.0" for x in range(100)))
     text = TEMPLATE[: TEMPLATE.index("[roughness]")] + '[roughness]\nkind = "profile"\nfile = "short.csv"\n'

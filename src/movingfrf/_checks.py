@@ -54,6 +54,15 @@ class ValidityWarning(UserWarning):
     """The answer lies outside the assumptions it was computed under."""
 
 
+def shown(value: object) -> str:
+    """Write a refused value, shortened where it is long."""
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of thousands of digits
+        text = "a number of thousands of digits"
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
 class Checks:
     """Collects faults, so that one error can name every one of them.
 
@@ -71,9 +80,12 @@ class Checks:
     def finite(self, name: str, value: Any, unit: str, condition: str = "a finite number") -> float:
         """Demand a real, finite number of credible magnitude."""
         if not isinstance(value, Real) or isinstance(value, bool):
-            self.refuse(name, f"must be {condition} [{unit}], got {value!r}")
+            self.refuse(name, f"must be {condition} [{unit}], got {shown(value)}")
             return float("nan")
-        number = float(value)
+        try:
+            number = float(value)
+        except OverflowError:
+            number = float("inf")
         if not np.isfinite(number):
             self.refuse(name, f"must be {condition}, got {number!r} {unit}")
         elif abs(number) > LARGEST:
@@ -101,16 +113,19 @@ class Checks:
     def whole(self, name: str, value: Any, *, least: int = 0) -> int:
         """Demand a whole number of at least `least`."""
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
-            self.refuse(name, f"must be a whole number of at least {least}, got {value!r}")
+            self.refuse(name, f"must be a whole number of at least {least}, got {shown(value)}")
             return least
         return int(value)
 
     def array(self, name: str, value: ArrayLike, unit: str, shape: tuple[int | None, ...]) -> FloatArray:
         """Demand finite numbers in an array of the given shape (None: any length); returns a frozen copy."""
         try:
-            array = np.array(value, dtype=float)
+            given = np.asarray(value)
+            array = np.array(given, dtype=float)
         except (TypeError, ValueError, OverflowError):
-            self.refuse(name, f"must be an array of numbers [{unit}], got {type(value).__name__}")
+            given, array = np.array(None), np.empty(0)
+        if array.size and given.dtype.kind not in "iuf":
+            self.refuse(name, f"must be an array of numbers [{unit}], got {shown(value)}")
             return np.full([n or 1 for n in shape], np.nan)
         wanted = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
         if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
@@ -132,7 +147,7 @@ class Checks:
         try:
             first, second = value
         except (TypeError, ValueError):
-            self.refuse(name, f"must be two numbers [{unit}], got {value!r}")
+            self.refuse(name, f"must be two numbers [{unit}], got {shown(value)}")
             return (float("nan"), float("nan"))
         check = self.positive if positive else self.not_negative
         return check(f"{name}[0]", first, unit), check(f"{name}[1]", second, unit)

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, CycloptsError, Parameter
 from rich.console import Console
-from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -71,7 +70,7 @@ def new(file: Path | None = None, /, *, loads: bool = False, force: bool = False
     if file.exists() and not force and file.read_text(encoding="utf-8", errors="replace") != text:
         raise ValueError(f"{file} exists and differs; choose another name, or --force to replace it")
     file.write_text(text, encoding="utf-8")
-    Console().print(f"wrote {file}", highlight=False, soft_wrap=True)
+    _console().print(f"wrote {file}", soft_wrap=True)
 
 
 @app.command
@@ -87,7 +86,7 @@ def check(file: Path, /) -> None:
     from movingfrf.scenario import read_scenario
 
     scenario = read_scenario(file)
-    console = Console(highlight=False)
+    console = _console()
     for heading, lines in described(scenario):
         table = Table(title=heading, title_justify="left", title_style="bold", show_header=False, box=None)
         for name, value in lines:
@@ -110,14 +109,18 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
     output
         The folder to write into; out/NAME beside the scenario by default.
     """
-    from movingfrf.metrics.basic import measures
-    from movingfrf.output import replacing, save, summary
-    from movingfrf.report import render
-    from movingfrf.scenario import read_scenario
-
-    console = Console(highlight=False)
+    console = _console()
     stages = _Stages()
     with stages:
+        stages.report("loading", 0.0)
+        import matplotlib.figure  # noqa: F401
+        import xarray  # noqa: F401
+
+        from movingfrf.metrics.basic import measures
+        from movingfrf.output import replacing, save, summary
+        from movingfrf.report import render
+        from movingfrf.scenario import read_scenario
+
         stages.report("scenario", 0.0)
         scenario = read_scenario(file)
         folder = output if output is not None else file.parent / "out" / scenario.name
@@ -133,10 +136,17 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
             stages.report("report.html", 0.0)
             page = render(result, guideway=scenario.guideway, scenario_text=scenario.text, title=scenario.name)
             (temporary / "report.html").write_text(page, encoding="utf-8")
+    if scenario.road is not None:
+        console.print(f"Road: {scenario.road.description}\n", soft_wrap=True)
     _print_result(console, result, found)
     console.print(stages.table())
     for name in ("report.html", "result.nc", "summary.json"):
         console.print(f"wrote {folder / name}", soft_wrap=True)
+
+
+def _console() -> Console:
+    """Console that prints names as they are, whatever brackets or colons they hold."""
+    return Console(highlight=False, markup=False, emoji=False)
 
 
 class _Stages:
@@ -194,7 +204,7 @@ def _print_result(console: Console, result: xr.Dataset, found: list[Measure]) ->
             tables[columns] = Table(box=None, pad_edge=False)
             tables[columns].add_column("", no_wrap=True)
             for name, units in columns:
-                tables[columns].add_column(escape(f"{name} [{units}]"), justify="right")
+                tables[columns].add_column(f"{name} [{units}]", justify="right")
         tables[columns].add_row(quantity, *(f"{measure.value:.4g}" for measure in taken))
     for table in tables.values():
         console.print(table)
@@ -202,7 +212,7 @@ def _print_result(console: Console, result: xr.Dataset, found: list[Measure]) ->
     findings = json.loads(result.attrs["findings"])
     console.print("Findings" if findings else "Findings: none", style="bold")
     for finding in findings:
-        console.print(f"- {finding['message']}", soft_wrap=True, markup=False)
+        console.print(f"- {finding['message']}", soft_wrap=True)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -231,7 +241,7 @@ def main(arguments: list[str] | None = None) -> int:
         return REFUSED
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        print(f"movingfrf: cannot read or write {place}{error.strerror or error}", file=sys.stderr)
+        print(f"movingfrf: cannot read or write: {place}{error.strerror or error}", file=sys.stderr)
         return REFUSED
     return DONE
 

@@ -193,10 +193,12 @@ def tabulated(*, file: Path, column: int = 1) -> History:
 def _switched(history: History, on: float, off: float | None, ramp: float) -> History:
     """Let a history act from `on` to `off` only."""
     with checking() as check:
-        check.not_negative("switch_on", on, "s")
-        check.not_negative("ramp", ramp, "s")
-        if off is not None and check.finite("switch_off", off, "s") < on + 2 * ramp:
-            check.refuse("switch_off", f"must leave time for both ramps after switch_on, got {off!r} s")
+        on = check.not_negative("switch_on", on, "s")
+        ramp = check.not_negative("ramp", ramp, "s")
+        if off is not None:
+            off = check.finite("switch_off", off, "s")
+            if off < on + 2 * ramp:
+                check.refuse("switch_off", f"must leave time for both ramps after switch_on, got {off!r} s")
 
     def switched(time: FloatArray) -> FloatArray:
         if ramp:

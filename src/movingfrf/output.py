@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import os
@@ -49,7 +50,7 @@ def replacing(folder: Path) -> Iterator[Path]:
             yield temporary
             for file in sorted(temporary.iterdir()):
                 if (folder / file.name).is_dir():
-                    raise IsADirectoryError(f"{folder / file.name} is a folder")
+                    raise IsADirectoryError(errno.EISDIR, "is a folder", str(folder / file.name))
             for file in sorted(temporary.iterdir()):
                 os.replace(file, folder / file.name)
             done = True

@@ -216,7 +216,7 @@ def _coupled_summary(result: xr.Dataset) -> str:
     return (
         f"A vehicle of {weight} kN with {_count(contacts, 'contact')} and "
         f"{_count(dofs, 'degree of freedom', 'degrees of freedom')} travels at {_speed(result)} for "
-        f"{_plain(_duration(result))} s over a {road} that gives way beneath it; contact forces, deflections of "
+        f"{_plain(_duration(result))} s over a {road}; contact forces, deflections of "
         "the road and motions of the vehicle were computed together, in the frequency domain, with moving "
         "frequency response functions (moving FRFs)."
     )

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from movingfrf import forces
-from movingfrf._checks import Fault, ParameterError, checking
+from movingfrf._checks import Fault, ParameterError, checking, shown
 from movingfrf.coupling import Progress, silent
 from movingfrf.guideways.base import Guideway
 from movingfrf.guideways.rigid import RigidGuideway
@@ -28,7 +28,7 @@ from movingfrf.roughness.excitation import require_cover
 from movingfrf.roughness.profiles import Profile, realise
 from movingfrf.roughness.readers.columns import read_columns
 from movingfrf.roughness.spectra import IsoRoad, iso_class
-from movingfrf.simulation import Journey, moving_loads, simulate
+from movingfrf.simulation import Journey, moving_loads, require_record, simulate
 from movingfrf.vehicles.base import Contact, Vehicle
 from movingfrf.vehicles.road import half_car, quarter_car
 
@@ -145,7 +145,8 @@ class Scenario:
                 blend=journey.blend,
                 progress=progress,
             )
-        return result.assign_attrs(scenario=self.text)
+        road = {} if self.road is None else {"road": self.road.description}
+        return result.assign_attrs(scenario=self.text, **road)
 
 
 def iso_road(
@@ -273,7 +274,7 @@ def read_scenario(file: str | Path) -> Scenario:
     """
     path = Path(file)
     try:
-        text = path.read_bytes().decode()
+        text = path.read_bytes().decode("utf-8-sig")
     except OSError as error:
         raise ScenarioError(str(path), [Fault("the file", f"cannot be read: {error.strerror or error}")]) from None
     except UnicodeDecodeError:
@@ -309,7 +310,7 @@ def parse_scenario(
     """
     try:
         tables = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # TOML's own, or an integer of thousands of digits
         raise ScenarioError(source, [Fault("the text", f"is not TOML: {error}")]) from None
     except RecursionError:
         raise ScenarioError(source, [Fault("the text", "is nested too deeply")]) from None
@@ -333,11 +334,21 @@ class _Builder:
         """Build everything; None if that was not possible, with the reasons in `faults`."""
         with_loads = "loads" in tables
         wanted = WITH_LOADS if with_loads else WITH_VEHICLE
+        for key in ("vehicle", "roughness"):
+            if with_loads and key in tables:
+                self.faults.append(Fault(key, "and [loads] exclude each other: forces are computed or prescribed"))
+                return None
         self._check_keys("", tables, wanted, wanted)
         guideway = self._section(tables, "guideway", "guideway")
         journey = self._section(tables, "run", "passage" if with_loads else "journey")
         if with_loads:
             found = self._section(tables, "loads", "loads")
+            if found is not None and journey is not None:
+                channels = found.positions.size + found.observe.size
+                self._attempt(
+                    "run:",
+                    lambda: require_record(journey.duration, journey.duration, journey.time_step, channels),
+                )
             if self.faults:
                 return None
             return Scenario(name=name, text=text, guideway=guideway, journey=journey, loads=found)
@@ -361,7 +372,7 @@ class _Builder:
     def _built(self, table: Any, family: str, path: str, **given: Any) -> Any:
         """Build one table, or return None and leave the reasons in `faults`."""
         if not isinstance(table, dict):
-            self.faults.append(Fault(path, f"must be a table [{path}], got {table!r:.60}"))
+            self.faults.append(Fault(path, f"must be a table [{path}], got {shown(table)}"))
             return None
         factory = self._factory(table, family, path)
         if factory is None:
@@ -388,6 +399,11 @@ class _Builder:
             if not broken:
                 self.faults.append(Fault(f"{path}:", str(error)))
             return None
+        except TypeError:
+            # A stand-in may be of no use to a function that does not check first; its own errors are defects.
+            if not broken:
+                raise
+            return None
         return None if broken else made
 
     def _factory(self, table: Mapping[str, Any], family: str, path: str) -> Callable[..., Any] | None:
@@ -397,7 +413,7 @@ class _Builder:
             self.faults.append(Fault(f"{path}.kind", f"is missing; it is one of {', '.join(kinds)}"))
         elif not isinstance(kind, str) or kind not in kinds:
             hint = _nearest(str(kind), kinds)
-            self.faults.append(Fault(f"{path}.kind", f"must be one of {', '.join(kinds)}, got {kind!r}{hint}"))
+            self.faults.append(Fault(f"{path}.kind", f"must be one of {', '.join(kinds)}, got {shown(kind)}{hint}"))
         else:
             return kinds[kind]
         return None
@@ -413,7 +429,7 @@ class _Builder:
             return [self._built(table, listed, f"{path}[{n}]") for n, table in enumerate(value)]
         if annotation == "Path":
             if not isinstance(value, str) or "\0" in value:
-                self.faults.append(Fault(path, f"must be the name of a file, got {value!r:.60}"))
+                self.faults.append(Fault(path, f"must be the name of a file, got {shown(value)}"))
                 return None
             return self.folder / value
         return value

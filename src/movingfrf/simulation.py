@@ -106,7 +106,7 @@ class Journey:
         longest = max(LONGEST_SETTLING * self.duration, LEAST_SETTLING * self.time_step)
         settling = min(-np.log(SETTLED) / slowest, longest) if slowest > 0 else longest
         channels = len(vehicle.contacts) + len(vehicle.dof_names)
-        _require_memory(self.duration, settling, self.time_step, channels)
+        require_record(self.duration, settling, self.time_step, channels)
         return SpectralGrid(
             samples=self.samples, time_step=self.time_step, truncation=self.truncation, settling=settling
         )
@@ -286,7 +286,7 @@ def moving_loads(
     positions : array_like, shape (load,)
         Where the forces act, in the frame that travels with them [m], positive ahead.
     speed : float
-        Common speed [m/s].
+        Common speed [m/s]; zero stands still, a negative one travels backwards.
     time_step : float
         Step in time [s].
     observe : array_like, shape (point,), optional
@@ -335,7 +335,7 @@ def moving_loads(
             check.refuse("force", "must have at least two samples, one load and one observation point")
     # What settles here is the guideway, in a time that is short beside that of any vehicle.
     settling = len(forces) * time_step
-    _require_memory(settling, settling, time_step, at.size + points.size)
+    require_record(settling, settling, time_step, at.size + points.size)
     grid = SpectralGrid(samples=len(forces), time_step=time_step, truncation=truncation, settling=settling)
     spectra = grid.to_spectra(forces)
     deflection = np.empty((points.size, grid.kept), complex).T
@@ -379,7 +379,23 @@ def moving_loads(
     return labelled(values, LOADED, attributes)
 
 
-def _require_memory(duration: float, settling: float, time_step: float, channels: int) -> None:
+def require_record(duration: float, settling: float, time_step: float, channels: int) -> None:
+    """Refuse a record that memory would not hold.
+
+    Parameters
+    ----------
+    duration, settling : float
+        Length of the record and of the padding behind it [s].
+    time_step : float
+        Step in time [s].
+    channels : int
+        Histories that are computed: contacts and degrees of freedom, or loads and points.
+
+    Raises
+    ------
+    ValueError
+        With what is needed and what is free.
+    """
     require_memory(
         BYTES_PER_SAMPLE * channels * (duration + settling) / time_step,
         f"a record of {duration:g} s in steps of {time_step:g} s",

@@ -13,7 +13,7 @@ from movingfrf._checks import ComplexArray, FloatArray, IntArray, checking
 
 # What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the
 # padded record grow by its inverse, which is why it is not smaller.
-WRAP_AROUND = 1e-4
+WRAP_AROUND = 3e-5
 
 # Share of the padding within which the level of a record fades out after its end; the rest of the padding is for
 # the response to die away. Slope and curvature fade earlier: after so many times the ratio of the record's typical

@@ -11,12 +11,12 @@ from movingfrf.vehicles.base import Vehicle
 # The path runs this far below the real axis, relative to the frequency: a growth per radian too slow to see.
 BELOW_AXIS = 1e-6
 
-# Points of the path per decade, and around each pole of the vehicle at relative distances down to BELOW_AXIS.
-PER_DECADE, CLUSTER = 16, np.r_[-1, 1] * np.logspace(-6, -0.5, 8)[:, None]
+# Points of the path per decade, every second of them in the middle of an interval.
+PER_DECADE = 24
 
-# Turns of the phase between neighbours that are still counted without a point between them, and how often an
-# interval may be halved.
-LARGEST_TURN, HALVINGS, MOST_POINTS = 0.25 * np.pi, 24, 20_000
+# A change from one end of an interval to its middle, relative to the value, that needs no closer look; how often an
+# interval may be halved, and how many there may be at a time.
+LARGEST_CHANGE, HALVINGS, MOST_INTERVALS = 0.9, 24, 20_000
 
 # Natural frequencies further apart than this ratio leave no digits to the lower ones.
 WIDEST = 1e-9
@@ -26,7 +26,7 @@ SEARCHES = 12
 
 
 def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
-    """Frequencies from zero to far above the vehicle's poles, dense around each of them [rad/s].
+    """Frequencies from zero to far above the vehicle's poles [rad/s].
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
     Returns
     -------
     ndarray, shape (frequency,)
-        Ascending, just below the real axis.
+        Ascending, just below the real axis: ends and middles of intervals in turn.
 
     Raises
     ------
@@ -52,8 +52,8 @@ def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
             f"{poles.max() / (2 * np.pi):.3g} Hz, lie too far apart to be computed together at {speed:g} m/s"
         )
     lowest, highest = 1e-2 * poles.min(), 1e2 * poles.max()
-    base = np.geomspace(lowest, highest, int(np.log10(highest / lowest) * PER_DECADE) + 2)
-    path = np.unique(np.concatenate([[0.0], base, (poles * (1 + CLUSTER.reshape(-1, 1))).ravel()]))
+    intervals = int(np.log10(highest / lowest) * PER_DECADE / 2) + 1
+    path = np.concatenate([[0.0, 0.5 * lowest], np.geomspace(lowest, highest, 2 * intervals + 1)])
     return path * (1 - 1j * BELOW_AXIS)
 
 
@@ -75,16 +75,37 @@ def growing_vibrations(system: System, along_axis: Sample) -> int:
     int
         Zero for a stable system.
     """
-    path, values = along_axis.omega, along_axis.determinants()
+    path, values = along_axis.omega, _without_poles(system.vehicle, along_axis)
+    first, middle, last = path[:-1:2], path[1::2], path[2::2]
+    at_first, at_middle, at_last = values[:-1:2], values[1::2], values[2::2]
+    turned = 0.0
     for _ in range(HALVINGS):
-        wide = np.flatnonzero(np.abs(np.angle(values[1:] / values[:-1])) > LARGEST_TURN)
-        if not wide.size or path.size > MOST_POINTS:
+        rough = np.abs(at_middle / at_first - 1) > LARGEST_CHANGE
+        rough |= np.abs(at_last / at_middle - 1) > LARGEST_CHANGE
+        smooth = ~rough
+        turned += np.angle(at_middle[smooth] / at_first[smooth]).sum()
+        turned += np.angle(at_last[smooth] / at_middle[smooth]).sum()
+        first, last = np.r_[first[rough], middle[rough]], np.r_[middle[rough], last[rough]]
+        at_first, at_last = np.r_[at_first[rough], at_middle[rough]], np.r_[at_middle[rough], at_last[rough]]
+        if not 0 < first.size < MOST_INTERVALS:
             break
-        between = 0.5 * (path[wide] + path[wide + 1])
-        path = np.insert(path, wide + 1, between)
-        values = np.insert(values, wide + 1, system.sample(between).determinants())
-    turned = np.angle(values[1:] / values[:-1]).sum()
+        middle = 0.5 * (first + last)
+        at_middle = _without_poles(system.vehicle, system.sample(middle))
+    turned += np.angle(at_last / at_first).sum()
     return max(round(-float(turned) / np.pi), 0)
+
+
+def _without_poles(vehicle: Vehicle, sample: Sample) -> ComplexArray:
+    """det(I + D G) with the vehicle's own poles moved far to the left, where they make no narrow peaks.
+
+    The poles λ are those of the vehicle on a road held still; all of them are stable, as is −|λ|, so that the
+    number of growing vibrations stays what it is.
+    """
+    values = sample.determinants()
+    for pole in vehicle.poles:
+        for twin in {pole, pole.conjugate()}:
+            values = values * (1j * sample.omega - twin) / (1j * sample.omega + abs(pole))
+    return values
 
 
 def require_stable(system: System, along_axis: Sample) -> None:

@@ -8,9 +8,14 @@ import pytest
 import movingfrf as mf
 from tests.helpers import (
     ABOVE,
+    BALLAST,
     BELOW,
     DAMPED,
+    PAD,
+    RAIL,
     SHARES,
+    SOIL,
+    SUBGRADE,
     TRACKS,
     UNDAMPED,
     compliance,
@@ -325,3 +330,36 @@ def test_offsets_keep_their_shape():
             alone = road.moving_frf(receiver - source, 50.0, omega)
             assert alone.shape == (3,)
             np.testing.assert_allclose(frf[:, i, j], alone, rtol=1e-13)
+
+
+@pytest.mark.parametrize("damping", [1.0, 1e3, 2e4])
+@pytest.mark.parametrize("speed", [1e-12, 1e-9, 1e-7, 1e-5])
+def test_roots_that_run_away_take_nothing_with_them(damping, speed):
+    """Bending damping and masses add roots that grow as 1/v; what v itself changes is of the order of v."""
+    beam = mf.EulerBernoulliBeam(bending_stiffness=6.4e6, mass=60.0, bending_damping=damping)
+    for foundation in (
+        SOIL,
+        mf.OnMass(above=PAD, mass=250.0, below=mf.OnMass(above=BALLAST, mass=900.0, below=SUBGRADE)),
+    ):
+        road = mf.track(beam, foundation)
+        omega, ahead = 2 * np.pi * np.linspace(0.0, 200.0, 41), [0.0, 4.0, -4.0]
+        at_rest, slow = (road.moving_frf(ahead, v, omega) for v in (0.0, speed))
+        assert np.abs(slow / at_rest - 1).max() < speed + 1e-12
+
+
+def test_layers_are_numbered_from_the_top_however_they_nest():
+    """Pad, mass, ballast, mass, subgrade: the same track whether it nests above or below."""
+    above = mf.OnMass(above=mf.OnMass(above=PAD, mass=1000.0, below=BALLAST), mass=250.0, below=SUBGRADE)
+    below = mf.OnMass(above=PAD, mass=1000.0, below=mf.OnMass(above=BALLAST, mass=250.0, below=SUBGRADE))
+    omega = 2 * np.pi * np.linspace(1.0, 200.0, 20)
+    first, second = (mf.track(RAIL, foundation).moving_frf(0.0, 10.0, omega) for foundation in (above, below))
+    assert np.abs(first / second - 1).max() < 1e-12
+    # The second is the one that test_dissipation_and_polynomials compares with the equations of motion.
+
+
+def test_across_broadcasts_with_ahead():
+    road = DAMPED["euler_bernoulli_winkler"]
+    frf = road.moving_frf(0.0, 10.0, [1.0, 2.0, 3.0], across=np.zeros(3))
+    assert frf.shape == (3, 3)
+    assert (frf == frf[:, :1]).all()
+    assert road.moving_frf([0.0, 1.0], 10.0, []).shape == (0, 2)

@@ -37,7 +37,7 @@ def first_stationary_velocity(lossless: Ratio) -> PhaseVelocity:
     PhaseVelocity
         Without masses in the foundation the minimum over all waves. With them the velocity of short waves
         sinks to zero (each mass vibrates for itself), `unbounded` is True and the value is the first local
-        minimum; inf if there is none.
+        minimum.
     """
     table = lossless.above[::2, ::2]
     leading = table[np.flatnonzero(table.any(axis=1))[-1]]
@@ -52,7 +52,8 @@ def first_stationary_velocity(lossless: Ratio) -> PhaseVelocity:
         if dips.size:
             around = kappa[dips[0] - 1], kappa[dips[0] + 1]
             return PhaseVelocity(_refined_minimum(table, around, number), unbounded)
-    return PhaseVelocity(float("inf") if unbounded else float(branches.min()), unbounded)
+    # No dip: the velocity of the shortest waves of the stiffest branch is the least one that is not a mass's own.
+    return PhaseVelocity(float(branches[:, -1].min() if unbounded else branches.min()), unbounded)
 
 
 def _phase_velocities(table: FloatArray, kappa: FloatArray) -> FloatArray:
@@ -65,7 +66,14 @@ def _phase_velocities(table: FloatArray, kappa: FloatArray) -> FloatArray:
     companion = np.zeros((kappa.size, degree, degree))
     companion[:, np.arange(1, degree), np.arange(degree - 1)] = 1.0
     companion[:, :, -1] = -in_p2[:, :-1] / in_p2[:, -1:]
-    squares = -np.linalg.eigvals(companion).real
+    roots = np.linalg.eigvals(companion).real
+    # Next to the stiff branches a matrix leaves few digits to the soft ones; Newton's method restores them.
+    power = np.arange(1, degree + 1)
+    for _ in range(2):
+        terms = roots[:, :, None] ** np.arange(degree + 1) * in_p2[:, None, :]
+        slope = (terms[:, :, 1:] * power).sum(axis=2) / roots
+        roots = roots - terms.sum(axis=2) / slope
+    squares = -roots
     return np.sort(np.sqrt(np.maximum(squares, 0.0)), axis=1) / kappa[:, None]
 
 

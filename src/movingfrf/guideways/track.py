@@ -228,6 +228,11 @@ class OnMass:
 
     def foundation_stiffness(self, *, damped: bool = True) -> Ratio:
         """Series of what is above and of the mass on what is below [N/m²]."""
+        if isinstance(self.above, OnMass):
+            # Only what has no mass transmits the same force at both ends: number the layers from the top.
+            top = self.above
+            rest = OnMass(above=top.below, mass=self.mass, below=self.below)
+            return OnMass(above=top.above, mass=top.mass, below=rest).foundation_stiffness(damped=damped)
         layer = Ratio(polynomial({(0, 2): self.mass}), ONE) + self.below.foundation_stiffness(damped=damped)
         return self.above.foundation_stiffness(damped=damped).in_series(layer)
 
@@ -311,8 +316,9 @@ class Track:
         >>> abs(road.moving_frf([0.0, 4.0, -4.0], 10.0, [0.0])).round(11)
         array([[3.737e-08, 3.600e-10, 0.000e+00]])
         """
+        shape = np.broadcast_shapes(np.shape(ahead), np.shape(across))
         with checking() as check:
-            offsets = check.array("ahead", np.ravel(np.asarray(ahead)), "m", (None,))
+            offsets = check.array("ahead", np.broadcast_to(np.asarray(ahead), shape).ravel(), "m", (None,))
             speed = check.finite("speed", speed, "m/s")
             frequencies = np.atleast_1d(np.asarray(omega, complex))
             if frequencies.ndim != 1 or not np.isfinite(frequencies).all() or (frequencies.imag > 0).any():
@@ -320,9 +326,7 @@ class Track:
             derivative = check.whole("derivative", derivative)
         distinct, back = np.unique(offsets, return_inverse=True)
         frf = residue_sum(self.stiffness(), distinct, speed, frequencies, derivative)
-        shape = np.broadcast_shapes(np.shape(ahead), np.shape(across))
-        spread = frf[back].T.reshape(-1, *np.shape(ahead))
-        return np.broadcast_to(spread, (frequencies.size, *shape))
+        return frf[back].T.reshape(frequencies.size, *shape)
 
 
 def track(beam: Beam, foundation: Foundation) -> Track:

@@ -32,7 +32,10 @@ CLEARLY_OFF = 1e-3
 
 
 # Newton steps on a root: the last one moves it by less than this, and squares the error.
-MOST_STEPS, CONVERGED = 3, 1e-9
+MOST_STEPS, CONVERGED = 4, 1e-9
+
+# Roots of two kinds that differ by this factor are computed apart, to within about its inverse.
+FAR = 1e4
 
 
 def polynomial(terms: dict[tuple[int, int], float]) -> FloatArray:
@@ -158,15 +161,7 @@ def wavenumbers(coefficients: ComplexArray) -> ComplexArray:
     ndarray, shape (degree, frequency)
         The roots, in no particular order.
     """
-    degree = len(coefficients) - 1
-    monic = coefficients[:-1] / coefficients[-1]
-    if degree == 4 and not coefficients[3].any():
-        roots = _quartic(monic[2], monic[1], monic[0])
-    else:
-        companion = np.zeros((coefficients.shape[1], degree, degree), complex)
-        companion[:, np.arange(1, degree), np.arange(degree - 1)] = 1.0
-        companion[:, :, -1] = -monic.T
-        roots = np.ascontiguousarray(np.linalg.eigvals(companion).T)
+    roots = _first_guess(coefficients)
     slope = slopes(coefficients)
     for _ in range(MOST_STEPS):
         with np.errstate(all="ignore"):
@@ -177,6 +172,33 @@ def wavenumbers(coefficients: ComplexArray) -> ComplexArray:
         if (_squared(step) <= CONVERGED**2 * _squared(roots)).all():
             break
     return roots
+
+
+def _first_guess(coefficients: ComplexArray) -> ComplexArray:
+    """Roots to a few digits at least, shape (degree, frequency)."""
+    degree = len(coefficients) - 1
+    if degree == 4 and not coefficients[3].any():
+        monic = coefficients[:-1] / coefficients[-1]
+        return _quartic(monic[2], monic[1], monic[0])
+    for small in range(1, degree):
+        if _far_apart(np.abs(coefficients), small):
+            # At small v some roots run away to infinity, and a matrix that holds both kinds loses the others.
+            return np.concatenate([_first_guess(coefficients[: small + 1]), _first_guess(coefficients[small:])])
+    companion = np.zeros((coefficients.shape[1], degree, degree), complex)
+    companion[:, np.arange(1, degree), np.arange(degree - 1)] = 1.0
+    companion[:, :, -1] = -(coefficients[:-1] / coefficients[-1]).T
+    return np.ascontiguousarray(np.linalg.eigvals(companion).T)
+
+
+def _far_apart(sizes: FloatArray, small: int) -> bool:
+    """Whether the first so many roots are, at every frequency, far smaller than the others (Cauchy's bounds)."""
+    below = np.arange(small)[:, None]
+    above = np.arange(small + 1, len(sizes))[:, None]
+    if not sizes[small].all():
+        return False
+    largest = 2 * ((sizes[:small] / sizes[small]) ** (1 / (small - below))).max(axis=0)
+    smallest = 0.5 / ((sizes[small + 1 :] / sizes[small]) ** (1 / (above - small))).max(axis=0)
+    return bool((smallest > FAR * largest).all())
 
 
 def _quartic(p: ComplexArray, q: ComplexArray, r: ComplexArray) -> ComplexArray:

@@ -35,8 +35,8 @@ def excite(
 ) -> Excitation:
     """Sample the profile under each contact, at the contact's own position.
 
-    The elevation at the foremost contact's start is the datum. Up to that point the road counts as flat and
-    within `blend` metres after it the profile sets in, so that every contact meets one and the same road.
+    The elevation at the foremost contact's start is the datum, each path's own. Up to that point the road counts
+    as flat and within `blend` metres after it the profile sets in, so that every contact meets the same road.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def excite(
     Returns
     -------
     Excitation
-        Roughness [m], positive up, and its datum [m].
+        Roughness [m], positive up, and the datum of the foremost contact's path [m].
 
     Raises
     ------
@@ -70,18 +70,18 @@ def excite(
     foremost = start + positions.max()
     require_cover(profile, start + positions.min(), foremost + speed * time_step * samples, paths)
     elevation = {path: profile.along(path) for path in set(paths)}
-    datum = float(elevation[paths[int(positions.argmax())]](np.array(foremost)))
+    datums = {path: float(along(np.array(foremost))) for path, along in elevation.items()}
     roughness = np.empty((len(paths), samples))
     travelled = speed * time_step * np.arange(samples)
     for contact, (position, path) in enumerate(zip(positions, paths, strict=True)):
         distance = travelled + (start + position)
         seen = elevation[path](distance)
-        seen -= datum
+        seen -= datums[path]
         if blend:
             blending = int(np.searchsorted(distance, foremost + blend))
             seen[:blending] *= smooth_step((distance[:blending] - foremost) / blend)
         roughness[contact] = seen
-    return Excitation(roughness.T, datum)
+    return Excitation(roughness.T, datums[paths[int(positions.argmax())]])
 
 
 def require_cover(profile: Profile, first: float, last: float, paths: Sequence[int]) -> None:

@@ -85,15 +85,15 @@ class Vehicle:
         The contacts, one per row of `contact_map`.
     vertical : array_like, shape (dof,)
         Motion of each degree of freedom when the vehicle moves down by one metre (1 for translations, 0 for
-        rotations); gravity acts along it.
+        rotations); gravity acts along it. It strains nothing within the vehicle and moves each contact by one.
     dof_names : sequence of str
         One name per degree of freedom.
 
     Raises
     ------
     ValueError
-        If shapes disagree, a matrix is not symmetric or not definite as demanded, or the contacts do not hold
-        the vehicle up.
+        If shapes disagree, a matrix is not symmetric or not definite as demanded, `vertical` is not a rigid
+        motion, or the contacts do not hold the vehicle up.
     """
 
     mass: ArrayLike
@@ -121,6 +121,7 @@ class Vehicle:
         for name, value in checked.items():
             object.__setattr__(self, name, value)
         with checking() as check:
+            _check_free(check, self)
             _check_held(check, self.held_stiffness)
 
     # The fields as arrays: what the constructor stored.
@@ -318,6 +319,21 @@ def _check_definite(check: Checks, name: str, matrix: object, *, strictly: bool)
     if smallest < (1e-12 if strictly else -1e-9):
         kind = "positive definite" if strictly else "positive semidefinite"
         check.refuse(name, f"must be {kind}, got a smallest scaled eigenvalue of {smallest:.3g}")
+
+
+def _check_free(check: Checks, vehicle: Vehicle) -> None:
+    """Demand that moving the vehicle down moves every contact as much, and strains nothing within."""
+    _, damping, stiffness, contact_map = vehicle.matrices
+    down = np.asarray(vehicle.vertical)
+    if not np.allclose(contact_map @ down, 1.0, rtol=0, atol=1e-6):
+        check.refuse(
+            "contact_map", "times vertical must be 1: the vehicle moves down by one metre, and so do its contacts"
+        )
+    for name, matrix in (("stiffness", stiffness), ("damping", damping)):
+        if not np.allclose(matrix @ down, 0.0, rtol=0, atol=1e-6 * np.abs(matrix).max(initial=0.0)):
+            check.refuse(
+                name, "times vertical must be 0: moving the vehicle down as a whole strains nothing within"
+            )
 
 
 def _check_held(check: Checks, stiffness: FloatArray) -> None:

@@ -58,7 +58,8 @@ def read_columns(file: str | Path) -> ReadProfile:
     if not lines:
         raise ValueError(f"{path} is empty: a profile needs at least four lines of station and elevation")
     separator = next(mark for mark in SEPARATORS if mark is None or mark in lines[0][1])
-    header = _numbers(lines[0][1], separator) is None
+    # Names stand first only if nothing in that line is a number; else it is a faulty row.
+    header = not any(_numbers(word, None) for word in lines[0][1].split(separator) if word.strip())
     rows: list[list[float]] = []
     for number, line in lines[1:] if header else lines:
         row = _numbers(line, separator)
