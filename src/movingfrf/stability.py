@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from movingfrf._checks import ComplexArray, SolveError
+from movingfrf._checks import ComplexArray, FloatArray, SolveError
 from movingfrf.coupling import Sample, System
 from movingfrf.vehicles.base import Vehicle
 
 # The path runs this far below the real axis, relative to the frequency: a growth per radian too slow to see.
 BELOW_AXIS = 1e-6
 
-# Points of the path per decade, every second of them in the middle of an interval.
-PER_DECADE = 24
+# Points of the path per decade, and around each pole of the vehicle: at distances that double from half of the
+# pole's own width up to `APART`, relative to its frequency. Every second point is the middle of an interval.
+PER_DECADE, APART = 16, 0.3
 
 # A change from one end of an interval to its middle, relative to the value, that needs no closer look; how often an
 # interval may be halved, and how many there may be at a time.
@@ -52,9 +53,19 @@ def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
             f"{poles.max() / (2 * np.pi):.3g} Hz, lie too far apart to be computed together at {speed:g} m/s"
         )
     lowest, highest = 1e-2 * poles.min(), 1e2 * poles.max()
-    intervals = int(np.log10(highest / lowest) * PER_DECADE / 2) + 1
-    path = np.concatenate([[0.0, 0.5 * lowest], np.geomspace(lowest, highest, 2 * intervals + 1)])
+    base = np.geomspace(lowest, highest, int(np.log10(highest / lowest) * PER_DECADE) + 2)
+    path = np.unique(np.concatenate([[0.0], base, *map(_around, vehicle.poles)]))
+    if path.size % 2 == 0:
+        path = np.append(path, 2 * highest)
     return path * (1 - 1j * BELOW_AXIS)
+
+
+def _around(pole: complex) -> FloatArray:
+    """Frequencies around a pole, as close as a resonance of its width needs."""
+    width = min(max(abs(pole.real) / abs(pole), BELOW_AXIS), APART)
+    distances = 0.5 * width * 2.0 ** np.arange(int(np.log2(2 * APART / width)) + 1)
+    around: FloatArray = abs(pole) * (1 + np.concatenate([-distances, [0.0], distances]))
+    return around
 
 
 def growing_vibrations(system: System, along_axis: Sample) -> int:
