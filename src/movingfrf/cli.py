@@ -156,11 +156,13 @@ class _Stages:
         self.seconds: dict[str, float] = {}
         self._began = self._since = time.perf_counter()
         self._stage = ""
+        terminal = Console(stderr=True)
+        self._shows = terminal.is_terminal
         self._display = Progress(
             TextColumn("{task.description}"),
             BarColumn(),
             TimeElapsedColumn(),
-            console=Console(stderr=True),
+            console=terminal,
             transient=True,
         )
         self._task = self._display.add_task("", total=1.0)
@@ -180,7 +182,7 @@ class _Stages:
             if self._stage:
                 self.seconds[self._stage] = self.seconds.get(self._stage, 0.0) + now - self._since
             self._stage, self._since = stage, now
-        if now - self._began > PATIENCE and stage and not self._display.live.is_started:
+        if self._shows and now - self._began > PATIENCE and stage and not self._display.live.is_started:
             self._display.start()
         self._display.update(self._task, description=stage, completed=fraction)
 

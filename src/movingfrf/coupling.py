@@ -72,10 +72,10 @@ class Sample(NamedTuple):
     frf: ComplexArray  # (frequency, receiver, source) [m/N]
     stiffness: ComplexArray  # (frequency, contact, contact) [N/m]
 
-    def determinants(self) -> ComplexArray:
-        """det(I + D G): its zeros are the poles of the coupled system."""
-        values: ComplexArray = np.linalg.det(np.eye(self.frf.shape[1]) + product(self.stiffness, self.frf))
-        return values
+    def matrices(self) -> ComplexArray:
+        """I + D G, shape (frequency, contact, contact): singular at the poles of the coupled system."""
+        matrices: ComplexArray = np.eye(self.frf.shape[1]) + product(self.stiffness, self.frf)
+        return matrices
 
 
 @dataclass(frozen=True, slots=True, eq=False)

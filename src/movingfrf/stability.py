@@ -15,8 +15,8 @@ BELOW_AXIS = 1e-6
 # pole's own width up to `APART`, relative to its frequency. Every second point is the middle of an interval.
 PER_DECADE, APART = 16, 0.3
 
-# A change from one end of an interval to its middle, relative to the value, that needs no closer look; how often an
-# interval may be halved, and how many there may be at a time.
+# A change from one end of an interval to its middle, relative to the value and contact by contact, that needs no
+# closer look; how often an interval may be halved, and how many there may be at a time.
 LARGEST_CHANGE, HALVINGS, MOST_INTERVALS = 0.9, 24, 20_000
 
 # Natural frequencies further apart than this ratio leave no digits to the lower ones.
@@ -86,37 +86,40 @@ def growing_vibrations(system: System, along_axis: Sample) -> int:
     int
         Zero for a stable system.
     """
-    path, values = along_axis.omega, _without_poles(system.vehicle, along_axis)
+    path, matrices = along_axis.omega, along_axis.matrices()
     first, middle, last = path[:-1:2], path[1::2], path[2::2]
-    at_first, at_middle, at_last = values[:-1:2], values[1::2], values[2::2]
+    at_first, at_middle, at_last = matrices[:-1:2], matrices[1::2], matrices[2::2]
     turned = 0.0
     for _ in range(HALVINGS):
-        rough = np.abs(at_middle / at_first - 1) > LARGEST_CHANGE
-        rough |= np.abs(at_last / at_middle - 1) > LARGEST_CHANGE
-        smooth = ~rough
-        turned += np.angle(at_middle[smooth] / at_first[smooth]).sum()
-        turned += np.angle(at_last[smooth] / at_middle[smooth]).sum()
+        factors = np.hstack([_factors(at_first, at_middle), _factors(at_middle, at_last)])
+        rough = (np.abs(factors - 1) > LARGEST_CHANGE).any(axis=1)
+        turned += np.angle(factors[~rough]).sum()
         first, last = np.r_[first[rough], middle[rough]], np.r_[middle[rough], last[rough]]
         at_first, at_last = np.r_[at_first[rough], at_middle[rough]], np.r_[at_middle[rough], at_last[rough]]
         if not 0 < first.size < MOST_INTERVALS:
             break
         middle = 0.5 * (first + last)
-        at_middle = _without_poles(system.vehicle, system.sample(middle))
-    turned += np.angle(at_last / at_first).sum()
+        at_middle = system.sample(middle).matrices()
+    turned += np.angle(_factors(at_first, at_last)).sum()
     return max(round(-float(turned) / np.pi), 0)
 
 
-def _without_poles(vehicle: Vehicle, sample: Sample) -> ComplexArray:
-    """det(I + D G) with the vehicle's own poles moved far to the left, where they make no narrow peaks.
+def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
+    """Eigenvalues of X₁⁻¹X₂, shape (interval, contact): by their product the determinant changes.
 
-    The poles λ are those of the vehicle on a road held still; all of them are stable, as is −|λ|, so that the
-    number of growing vibrations stays what it is.
+    One by one they stay near 1 where the determinant itself, their product, may turn by full circles.
     """
-    values = sample.determinants()
-    for pole in vehicle.poles:
-        for twin in {pole, pole.conjugate()}:
-            values = values * (1j * sample.omega - twin) / (1j * sample.omega + abs(pole))
-    return values
+    count = before.shape[1]
+    if count == 1:
+        return (after / before)[:, :, 0]
+    if count == 2:
+        (a, b), (c, d) = before[:, 0].T, before[:, 1].T
+        (e, f), (g, h) = after[:, 0].T, after[:, 1].T
+        determinant = a * d - b * c
+        half = 0.5 * (d * e - b * g + a * h - c * f) / determinant
+        root = np.sqrt(half * half - (e * h - f * g) / determinant)
+        return np.stack([half + root, half - root], axis=1)
+    return np.linalg.eigvals(np.linalg.solve(before, after)).astype(complex)
 
 
 def require_stable(system: System, along_axis: Sample) -> None:
@@ -146,7 +149,7 @@ def _described(system: System) -> str:
     magnitudes = np.abs(system.vehicle.poles)
     across = np.geomspace(0.1 * magnitudes.min(), 10 * magnitudes.max(), 80)
     omega = (across[:, None] * (1 - 1j * np.geomspace(1e-4, 2.0, 16))).ravel()
-    size = np.abs(system.sample(omega).determinants())
+    size = np.abs(np.linalg.det(system.sample(omega).matrices()))
     zeros = [_zero(system, start) for start in omega[np.argsort(size)[:SEARCHES]]]
     growing = [zero for zero in zeros if zero is not None]
     if not growing:
@@ -159,7 +162,7 @@ def _zero(system: System, start: complex) -> complex | None:
     """Zero of the determinant near a point of the lower half-plane, by the secant method; None if it leaves."""
     before, now = start, start * 1.001
     for _ in range(60):
-        at_before, at_now = system.sample(np.array([before, now])).determinants()
+        at_before, at_now = np.linalg.det(system.sample(np.array([before, now])).matrices())
         if abs(at_now) < 1e-10:
             return now
         if at_now == at_before:
