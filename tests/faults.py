@@ -222,7 +222,7 @@ def main() -> int:
     survived = 0
     with ThreadPoolExecutor(AT_A_TIME) as pool:
         for fault, (status, message) in zip(chosen, pool.map(outcome, chosen), strict=True):
-            killed = status in (1, 2) and "::" in message
+            killed = status in (1, 2)  # the package may refuse a fault itself, before any test runs
             survived += not killed
             print(
                 f"{fault.name:40} {'killed by ' + message if killed else f'SURVIVED ({status}) {message}'}",

@@ -13,8 +13,9 @@ from movingfrf.guideways.waves import Ratio, residue_sum
 # Wavenumbers looked at, per decade, over six decades; each refinement shrinks the bracket sixteenfold.
 PER_DECADE, REFINEMENTS, POINTS = 20, 6, 33
 
-# Speeds up to the limit, and points of the deflection basin, among which the greatest deflection is sought.
-SPEEDS, BASIN = 160, 241
+# Speeds up to the limit, and points of the deflection basin, among which the greatest deflection is sought first;
+# then the speed is refined on a basin of so many points.
+SPEEDS, COARSE, FINE = 64, 121, 1201
 
 
 class PhaseVelocity(NamedTuple):
@@ -104,21 +105,23 @@ def speed_of_greatest_deflection(stiffness: Ratio, limit: float) -> float:
     """
     static = np.flatnonzero(stiffness.above[:, 0])
     length = (stiffness.above[static[-1], 0] / stiffness.above[0, 0]) ** (1 / static[-1])
-    basin = length * np.linspace(-8.0, 4.0, BASIN)
 
-    def shallowness(speed: float) -> float:
+    def shallowness(speed: float, points: int) -> float:
+        basin = length * np.linspace(-8.0, 4.0, points)
         deflection = residue_sum(stiffness, basin, speed, np.zeros(1, complex), 0)[:, 0].real
-        peak = min(max(int(deflection.argmax()), 1), BASIN - 2)
+        peak = min(max(int(deflection.argmax()), 1), points - 2)
         left, middle, right = deflection[peak - 1 : peak + 2]
         # The vertex of the parabola through the three highest points.
         return -float(middle - (right - left) ** 2 / (8 * (right - 2 * middle + left)))
 
     # Open at the limit, where the deflection of an undamped guideway is infinite.
     speeds = limit * np.linspace(0.0, 1.0 - 1e-9, SPEEDS)
-    values = np.array([shallowness(speed) for speed in speeds])
+    values = np.array([shallowness(speed, COARSE) for speed in speeds])
     best = int(values.argmin())
     if best == 0:
         return float("inf")
     bounds = speeds[best - 1], speeds[min(best + 1, SPEEDS - 1)]
-    found = minimize_scalar(shallowness, bounds=bounds, method="bounded", options={"xatol": 1e-9 * limit})
+    found = minimize_scalar(
+        shallowness, bounds=bounds, args=(FINE,), method="bounded", options={"xatol": 1e-7 * limit}
+    )
     return float(found.x)
