@@ -10,7 +10,8 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.metrics.basic import measures
-from movingfrf.report import number, render
+from movingfrf.report import render
+from movingfrf.wording import number
 
 ROAD = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9), mf.Spring(stiffness=8e6, damping=3e4))
 CAR = mf.quarter_car(
