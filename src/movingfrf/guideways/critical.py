@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from movingfrf._checks import FloatArray
 from movingfrf.guideways.waves import Ratio, residue_sum
@@ -103,6 +102,8 @@ def speed_of_greatest_deflection(stiffness: Ratio, limit: float) -> float:
     float
         The speed [m/s]; inf if the deflection is greatest at rest, so that no speed is critical.
     """
+    from scipy.optimize import minimize_scalar
+
     static = np.flatnonzero(stiffness.above[:, 0])
     length = (stiffness.above[static[-1], 0] / stiffness.above[0, 0]) ** (1 / static[-1])
 
