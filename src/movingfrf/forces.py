@@ -7,8 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from movingfrf._checks import FloatArray, checking
+from movingfrf._checks import FloatArray, checking, shown
 from movingfrf.spectral import smooth_step
+
+# Sine waves that one force may be made of.
+MOST_WAVES = 100_000
 
 # A force over time [s] → [N].
 History = Callable[[FloatArray], FloatArray]
@@ -116,7 +119,7 @@ def random_sum(
     lowest, highest : float
         Band in which the frequencies lie, uniformly distributed [Hz].
     count : int
-        Number of sine waves.
+        Number of sine waves, at most 100,000.
     seed : int
         Seed: the same seed gives the same force.
     mean : float
@@ -138,7 +141,8 @@ def random_sum(
         check.positive("rms", rms, "N")
         check.not_negative("lowest", lowest, "Hz")
         check.positive("highest", highest, "Hz")
-        check.whole("count", count, least=1)
+        if check.whole("count", count, least=1) > MOST_WAVES:
+            check.refuse("count", f"must be at most {MOST_WAVES}, got {shown(count)}")
         check.whole("seed", seed)
         if not check.faults and lowest >= highest:
             check.refuse("highest", f"must be above lowest, {lowest:g} Hz, got {highest:g} Hz")

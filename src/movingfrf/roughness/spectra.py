@@ -14,6 +14,9 @@ REFERENCE_FREQUENCY = 0.1
 # Geometric class centres of ISO 8608 at 0.1 cycle/m [m³]; the limits between classes are twice these.
 CLASS_CENTRES = {letter: 16e-6 * 4.0**n for n, letter in enumerate("ABCDEFGH")}
 
+# Measured roads lie between 1 and 4; powers far beyond overflow.
+LARGEST_WAVINESS = 10.0
+
 # Bands in which ISO 8608 smooths a spectrum [cycle/m]: octaves up to a centre of 1/32, thirds of octaves up to 1/4,
 # twelfths beyond, over the range that it fits, 0.011 to 2.83.
 SMOOTHING_EDGES = np.concatenate(
@@ -131,7 +134,8 @@ class IsoRoad:
 
 
 def _checked_band(check: Checks, waviness: float, band: tuple[float, float]) -> tuple[float, float]:
-    check.finite("waviness", waviness, "1")
+    if abs(check.finite("waviness", waviness, "1")) > LARGEST_WAVINESS:
+        check.refuse("waviness", f"must lie within ±{LARGEST_WAVINESS:g}, got {waviness!r}")
     low, high = check.pair("band", band, "cycle/m")
     if low >= high:
         check.refuse("band", f"must be two increasing frequencies, got {band!r} cycle/m")
