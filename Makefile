@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 SCENARIO := out/demo.toml
 
-.PHONY: demo test bench faults lint format clean
+.PHONY: demo test bench accuracy faults lint format clean
 
 demo: $(READY)
 	@mkdir -p out
@@ -27,6 +27,9 @@ format: $(READY)
 
 bench: $(READY)
 	$(BIN)/python -m benchmarks.bench
+
+accuracy: $(READY)
+	$(BIN)/python -m benchmarks.accuracy
 
 faults: $(READY)
 	$(BIN)/python -m tests.faults
