@@ -142,14 +142,16 @@ class Checks:
         array.flags.writeable = False
         return array
 
-    def pair(self, name: str, value: Any, unit: str, *, positive: bool = True) -> tuple[float, float]:
-        """Demand two numbers: positive ones, or at least zero."""
+    def pair(
+        self, name: str, value: Any, unit: str, *, positive: bool = True, signed: bool = False
+    ) -> tuple[float, float]:
+        """Demand two numbers: positive ones, or at least zero, or of any sign."""
         try:
             first, second = value
         except (TypeError, ValueError):
             self.refuse(name, f"must be two numbers [{unit}], got {shown(value)}")
             return (float("nan"), float("nan"))
-        check = self.positive if positive else self.not_negative
+        check = self.finite if signed else self.positive if positive else self.not_negative
         return check(f"{name}[0]", first, unit), check(f"{name}[1]", second, unit)
 
 

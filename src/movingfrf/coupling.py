@@ -7,7 +7,6 @@ constant; what the roughness adds to that state solves (I + D G) F = D R.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -16,18 +15,12 @@ import numpy as np
 
 from movingfrf._checks import ComplexArray, FloatArray, SolveError
 from movingfrf.guideways.base import Guideway
+from movingfrf.progress import Progress, silent
 from movingfrf.spectral import SpectralGrid
 from movingfrf.vehicles.base import Modes, Vehicle
 
 # Frequencies solved at a time: their arrays stay within the processor's cache.
 CHUNK = 4096
-
-
-Progress = Callable[[str, float], None]
-
-
-def silent(stage: str, fraction: float) -> None:
-    """Report no progress."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -8,7 +8,7 @@ from movingfrf.coupling import joined, steady_state
 from movingfrf.roughness.profiles import Profile
 from movingfrf.roughness.spectra import fit_iso, iso_class, welch
 from movingfrf.scenario import Scenario
-from movingfrf.simulation import BYTES_PER_SAMPLE
+from movingfrf.simulation import BYTES_PER_SAMPLE, spectral_grid
 from movingfrf.spectral import SpectralGrid
 
 # A section: its heading and its lines of name and value.
@@ -95,7 +95,7 @@ def _loads(scenario: Scenario) -> list[tuple[str, str]]:
 def _run(scenario: Scenario) -> list[tuple[str, str]]:
     journey = scenario.journey
     if scenario.vehicle is not None:
-        grid = journey.grid(scenario.vehicle)
+        grid = spectral_grid(journey, scenario.vehicle)
         channels = len(scenario.vehicle.contacts) + len(scenario.vehicle.dof_names)
     else:
         assert scenario.loads is not None

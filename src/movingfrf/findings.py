@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._checks import ComplexArray, FloatArray, ValidityWarning
-from movingfrf.spectral import WRAP_AROUND, SpectralGrid
 
 # Share of the critical speed from which on it is worth a word.
 NEAR_CRITICAL = 0.8
@@ -59,10 +58,10 @@ def near_critical(speed: float, critical_speed: float) -> list[Finding]:
     ]
 
 
-def not_decayed(name: str, remainder: FloatArray, values: FloatArray) -> list[Finding]:
-    """Remainder at the end of the padding, shape (channel,), against records of shape (time, channel)."""
+def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Finding]:
+    """Compare what wraps around from the end of the padding (channel,) with records (time, channel)."""
     size = np.sqrt([channel @ channel / len(channel) for channel in values.T])
-    left = np.divide(remainder * WRAP_AROUND, size, out=np.zeros_like(size), where=size > 0).max(initial=0.0)
+    left = np.divide(wrapped, size, out=np.zeros_like(size), where=size > 0).max(initial=0.0)
     if left <= TOLERATED:
         return []
     return [
@@ -87,10 +86,10 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
     ]
 
 
-def beyond_nyquist(roughness: ComplexArray, grid: SpectralGrid) -> list[Finding]:
+def beyond_nyquist(roughness: ComplexArray, time_step: float) -> list[Finding]:
     """Roughness spectra, shape (frequency, contact), that reach up to the Nyquist frequency."""
     squared = np.arange(len(roughness), dtype=float) ** 2
-    first = int(0.9 * grid.size)
+    first = int(0.9 * len(roughness))
     share = 0.0
     for spectrum in roughness.T:
         energy = (spectrum.real**2 + spectrum.imag**2) * squared
@@ -102,7 +101,7 @@ def beyond_nyquist(roughness: ComplexArray, grid: SpectralGrid) -> list[Finding]
         Finding(
             "beyond_nyquist",
             f"{share:.1%} of the slope of the road, as seen by a contact, lies in the highest tenth of the "
-            f"frequencies that a step of {grid.time_step:g} s resolves (up to {0.5 / grid.time_step:g} Hz); "
+            f"frequencies that a step of {time_step:g} s resolves (up to {0.5 / time_step:g} Hz); "
             "a shorter time step, or a smoother profile, is needed",
         )
     ]

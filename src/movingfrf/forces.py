@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from movingfrf._checks import FloatArray, checking, shown
-from movingfrf.spectral import smooth_step
+from movingfrf.smooth import smooth_step
 
 # Sine waves that one force may be made of.
 MOST_WAVES = 100_000

@@ -19,16 +19,17 @@ import numpy as np
 
 from movingfrf import forces
 from movingfrf._checks import Fault, ParameterError, checking, shown
-from movingfrf.coupling import Progress, silent
 from movingfrf.guideways.base import Guideway
 from movingfrf.guideways.rigid import RigidGuideway
 from movingfrf.guideways.track import EulerBernoulliBeam, OnMass, ShearLayer, Spring, TimoshenkoBeam, track
+from movingfrf.journey import Journey
+from movingfrf.progress import Progress, silent
 from movingfrf.roughness import profiles
 from movingfrf.roughness.excitation import require_cover
 from movingfrf.roughness.profiles import Profile, realise
 from movingfrf.roughness.readers.columns import read_columns
 from movingfrf.roughness.spectra import IsoRoad, iso_class
-from movingfrf.simulation import Journey, moving_loads, require_record, simulate
+from movingfrf.simulation import moving_loads, require_record, simulate, spectral_grid
 from movingfrf.vehicles.base import Contact, Vehicle
 from movingfrf.vehicles.road import half_car, quarter_car
 
@@ -356,7 +357,7 @@ class _Builder:
         interval = SOME_INTERVAL
         if journey is not None and vehicle is not None:
             interval = journey.interval(vehicle)
-            if self._attempt("run:", lambda: journey.grid(vehicle)) is False:
+            if self._attempt("run:", lambda: spectral_grid(journey, vehicle)) is False:
                 return None
         road = self._section(tables, "roughness", "roughness", interval=interval)
         if vehicle is not None and road is not None and journey is not None:

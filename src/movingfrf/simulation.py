@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,8 +10,10 @@ from numpy.typing import ArrayLike
 
 import movingfrf.findings as find
 from movingfrf._checks import checking, require_memory
-from movingfrf.coupling import CHUNK, Progress, couple, joined, silent, steady_state
+from movingfrf.coupling import CHUNK, couple, joined, steady_state
 from movingfrf.guideways.base import Guideway
+from movingfrf.journey import Journey
+from movingfrf.progress import Progress, silent
 from movingfrf.response import histories
 from movingfrf.roughness.excitation import excite
 from movingfrf.roughness.profiles import Profile
@@ -35,81 +37,6 @@ SAMPLES_BEYOND = 256
 # Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
 # computation, measured on an hour of travel.
 BYTES_PER_SAMPLE = 60
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Journey:
-    """How a vehicle travels and in what steps it is observed.
-
-    Parameters
-    ----------
-    speed : float
-        Speed [m/s].
-    duration : float
-        Duration [s].
-    start : float
-        Distance of the vehicle's reference point at t = 0 [m].
-    time_step : float
-        Step in time [s].
-    truncation : float, optional
-        Frequency beyond which the road counts as rigid [Hz].
-    blend : float
-        Length over which the profile sets in [m].
-
-    Raises
-    ------
-    ValueError
-        If a value is impossible.
-    """
-
-    speed: float
-    duration: float
-    start: float = 0.0
-    time_step: float = 1e-3
-    truncation: float | None = None
-    blend: float = 5.0
-
-    def __post_init__(self) -> None:
-        """Check the parameters."""
-        with checking() as check:
-            check.positive("speed", self.speed, "m/s")
-            check.positive("duration", self.duration, "s")
-            check.positive("time_step", self.time_step, "s")
-            check.finite("start", self.start, "m")
-            check.not_negative("blend", self.blend, "m")
-            if self.truncation is not None:
-                check.not_negative("truncation", self.truncation, "Hz")
-            if not check.faults and self.samples < 2:
-                check.refuse(
-                    "duration", f"must be at least two time steps of {self.time_step:g} s, got {self.duration:g} s"
-                )
-
-    @property
-    def samples(self) -> int:
-        """Number of time steps."""
-        return round(self.duration / self.time_step)
-
-    def interval(self, vehicle: Vehicle) -> tuple[float, float]:
-        """First and last distance that a contact meets [m]."""
-        positions = self.start + vehicle.positions
-        return float(positions.min()), float(positions.max()) + self.speed * self.time_step * self.samples
-
-    def grid(self, vehicle: Vehicle) -> SpectralGrid:
-        """Frequencies that stand for the journey, with padding for the vehicle to settle in.
-
-        Raises
-        ------
-        ValueError
-            If memory would not hold the result.
-        """
-        slowest = float((-vehicle.poles.real).min())
-        longest = max(LONGEST_SETTLING * self.duration, LEAST_SETTLING * self.time_step)
-        settling = min(-np.log(SETTLED) / slowest, longest) if slowest > 0 else longest
-        channels = len(vehicle.contacts) + len(vehicle.dof_names)
-        require_record(self.duration, settling, self.time_step, channels)
-        return SpectralGrid(
-            samples=self.samples, time_step=self.time_step, truncation=self.truncation, settling=settling
-        )
 
 
 def simulate(
@@ -188,7 +115,7 @@ def simulate(
     journey = Journey(
         speed=speed, duration=duration, start=start, time_step=time_step, truncation=truncation, blend=blend
     )
-    grid = journey.grid(vehicle)
+    grid = spectral_grid(journey, vehicle)
     samples = journey.samples
     progress("profile", 0.0)
     excitation = excite(
@@ -226,9 +153,9 @@ def simulate(
     found = [
         *find.contact_lost(response.force.values + steady.load, time_step),
         *find.near_critical(speed, critical_speed),
-        *find.not_decayed("vehicle's motion", response.motion.remainder, response.motion.values),
+        *find.not_decayed("vehicle's motion", response.motion.wrapped, response.motion.values),
         *find.beyond_truncation(grid.truncation or 0.0, error),
-        *find.beyond_nyquist(roughness, grid),
+        *find.beyond_nyquist(roughness, time_step),
     ]
     deflection = response.deflection.values
     deflection += steady.deflection
@@ -356,7 +283,7 @@ def moving_loads(
     critical_speed = float(guideway.critical_speed)
     found = [
         *find.near_critical(abs(speed), critical_speed),
-        *find.not_decayed("deflection", response.remainder, response.values),
+        *find.not_decayed("deflection", response.wrapped, response.values),
         *find.beyond_truncation(truncation or 0.0, error),
     ]
     values = {
@@ -377,6 +304,36 @@ def moving_loads(
         "findings": find.announced(found),
     }
     return labelled(values, LOADED, attributes)
+
+
+def spectral_grid(journey: Journey, vehicle: Vehicle) -> SpectralGrid:
+    """Frequencies that stand for the journey, with padding for the vehicle to settle in.
+
+    Parameters
+    ----------
+    journey : Journey
+        How the vehicle travels.
+    vehicle : Vehicle
+        The vehicle.
+
+    Returns
+    -------
+    SpectralGrid
+        With the journey's samples and truncation.
+
+    Raises
+    ------
+    ValueError
+        If memory would not hold the result.
+    """
+    slowest = float((-vehicle.poles.real).min())
+    longest = max(LONGEST_SETTLING * journey.duration, LEAST_SETTLING * journey.time_step)
+    settling = min(-np.log(SETTLED) / slowest, longest) if slowest > 0 else longest
+    channels = len(vehicle.contacts) + len(vehicle.dof_names)
+    require_record(journey.duration, settling, journey.time_step, channels)
+    return SpectralGrid(
+        samples=journey.samples, time_step=journey.time_step, truncation=journey.truncation, settling=settling
+    )
 
 
 def require_record(duration: float, settling: float, time_step: float, channels: int) -> None:

@@ -10,6 +10,7 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from movingfrf._checks import ComplexArray, FloatArray, IntArray, checking
+from movingfrf.smooth import smooth_step
 
 # What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the
 # padded record grow by its inverse, which is why it is not smaller.
@@ -32,10 +33,10 @@ CURVATURE = np.array([35 / 12, -26 / 3, 19 / 2, -14 / 3, 11 / 12])
 
 
 class Histories(NamedTuple):
-    """Records, and what is left of each near the end of the padding: it wraps around `WRAP_AROUND` weaker."""
+    """Records, and what of each wraps around from the end of the padding to the start."""
 
     values: FloatArray  # (time, channel)
-    remainder: FloatArray  # (channel,)
+    wrapped: FloatArray  # (channel,)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -165,11 +166,11 @@ class SpectralGrid:
         Returns
         -------
         Histories
-            Records of shape (time, channel), and the largest value within a hundredth of the period near its end
-            (not at the very end, where the ripple that precedes a jump at t = 0 lies).
+            Records of shape (time, channel), and the largest value, as it wraps around, within a hundredth of the
+            period near its end (not at the very end, where the ripple that precedes a jump at t = 0 lies).
         """
         histories = np.empty((spectra.shape[1], self.samples))
-        remainder = np.empty(spectra.shape[1])
+        wrapped = np.empty(spectra.shape[1])
         last = self.padded // 100 + 1
         memory = self.scratch() if scratch is None else scratch
         factor = (1j * self.omega(slice(len(spectra)))) ** derivative if derivative else None
@@ -179,10 +180,8 @@ class SpectralGrid:
             block = spectra.T[some] if factor is None else spectra.T[some] * factor
             periodic = np.fft.irfft(block, self.padded, out=memory[: len(block)])
             np.multiply(periodic[:, : self.samples], growth, out=histories[some])
-            remainder[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / (
-                self.time_step * WRAP_AROUND
-            )
-        return Histories(histories.T, remainder)
+            wrapped[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / self.time_step
+        return Histories(histories.T, wrapped)
 
     def _continuation(self, history: FloatArray) -> FloatArray:
         """Continue the record, so that neither value, slope nor curvature jumps."""
@@ -206,18 +205,6 @@ class SpectralGrid:
         bend, step = float(bends @ bends), float(steps @ steps)
         longest = (self.padded - self.samples) * FADE
         return int(min(TIMES_ITS_SCALE * np.sqrt(step / bend), longest)) if bend else int(longest)
-
-
-def smooth_step(x: FloatArray) -> FloatArray:
-    """Quintic from 0 at x ≤ 0 to 1 at x ≥ 1, its slope and curvature zero at both ends.
-
-    Examples
-    --------
-    >>> smooth_step(np.array([-1.0, 0.0, 0.5, 1.0, 2.0])).tolist()
-    [0.0, 0.0, 0.5, 1.0, 1.0]
-    """
-    x = np.clip(x, 0.0, 1.0)
-    return x * x * x * (10.0 + x * (6.0 * x - 15.0))
 
 
 def _fading(count: int) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy as np
 
 from movingfrf._checks import FloatArray
 from movingfrf.roughness.profiles import Profile
-from movingfrf.spectral import smooth_step
+from movingfrf.smooth import smooth_step, smooth_step_slope
 
 # Relative slack in the comparison of two lengths that were computed in different ways.
 SLACK = 1e-9
@@ -20,6 +20,7 @@ class Excitation(NamedTuple):
 
     roughness: FloatArray  # (time, contact) [m]
     datum: float  # [m]
+    rate: FloatArray | None = None  # (time, contact) [m/s], where it was asked for
 
 
 def excite(
@@ -32,6 +33,7 @@ def excite(
     time_step: float,
     start: float,
     blend: float,
+    rate: bool = False,
 ) -> Excitation:
     """Sample the profile under each contact, at the contact's own position.
 
@@ -56,11 +58,13 @@ def excite(
         Distance of the reference point at t = 0 [m].
     blend : float
         Length over which the profile sets in [m]; 0 leaves the profile as it is.
+    rate : bool
+        Whether the rate of change ṙ = v r′ is wanted as well.
 
     Returns
     -------
     Excitation
-        Roughness [m], positive up, and the datum of the foremost contact's path [m].
+        Roughness [m], positive up, the datum of the foremost contact's path [m], and the rate [m/s] if wanted.
 
     Raises
     ------
@@ -71,17 +75,26 @@ def excite(
     require_cover(profile, start + positions.min(), foremost + speed * time_step * samples, paths)
     elevation = {path: profile.along(path) for path in set(paths)}
     datums = {path: float(along(np.array(foremost))) for path, along in elevation.items()}
+    slope = {path: along.derivative() for path, along in elevation.items()} if rate else {}
     roughness = np.empty((len(paths), samples))
+    rates = np.empty((len(paths), samples)) if rate else None
     travelled = speed * time_step * np.arange(samples)
     for contact, (position, path) in enumerate(zip(positions, paths, strict=True)):
         distance = travelled + (start + position)
         seen = elevation[path](distance)
         seen -= datums[path]
-        if blend:
-            blending = int(np.searchsorted(distance, foremost + blend))
-            seen[:blending] *= smooth_step((distance[:blending] - foremost) / blend)
+        blending = int(np.searchsorted(distance, foremost + blend)) if blend else 0
+        setting_in = (distance[:blending] - foremost) / blend if blend else distance[:0]
+        if rates is not None:
+            rising = slope[path](distance)
+            rising[:blending] *= smooth_step(setting_in)
+            if blend:
+                rising[:blending] += seen[:blending] * smooth_step_slope(setting_in) / blend
+            rates[contact] = speed * rising
+        seen[:blending] *= smooth_step(setting_in)
         roughness[contact] = seen
-    return Excitation(roughness.T, datums[paths[int(positions.argmax())]])
+    datum = datums[paths[int(positions.argmax())]]
+    return Excitation(roughness.T, datum, None if rates is None else rates.T)
 
 
 def require_cover(profile: Profile, first: float, last: float, paths: Sequence[int]) -> None:

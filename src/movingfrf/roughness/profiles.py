@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import scipy.fft
 from numpy.typing import ArrayLike
 
 from movingfrf._checks import FloatArray, checking, require_memory
-from movingfrf.spectral import smooth_step
+from movingfrf.smooth import smooth_step
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 # Bytes per sample that a realisation takes at its peak.
 BYTES_PER_SAMPLE = 64
@@ -78,7 +80,7 @@ class Profile:
         elevation = np.asarray(self.elevation)
         return 1 if elevation.ndim == 1 else elevation.shape[1]
 
-    def along(self, path: int = 0) -> Callable[[FloatArray], FloatArray]:
+    def along(self, path: int = 0) -> CubicSpline:
         """Elevation of one path as a function of distance: the cubic spline through its samples.
 
         Parameters
@@ -88,16 +90,13 @@ class Profile:
 
         Returns
         -------
-        callable
-            Elevation [m] at any array of distances [m] on the profile.
+        scipy.interpolate.CubicSpline
+            Callable with any array of distances [m] on the profile; gives elevations [m].
         """
         from scipy.interpolate import CubicSpline
 
         elevation = np.asarray(self.elevation)
-        spline: Callable[[FloatArray], FloatArray] = CubicSpline(
-            self.stations, elevation if elevation.ndim == 1 else elevation[:, path]
-        )
-        return spline
+        return CubicSpline(self.stations, elevation if elevation.ndim == 1 else elevation[:, path])
 
 
 class Spectrum(Protocol):

@@ -1,0 +1,189 @@
+"""A guideway known by its moving impulse response: from a finite-element model, or from a measurement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._checks import ComplexArray, FloatArray, IntArray, checking
+
+# Two speeds or offsets that differ by less than this share, or this many metres, are one.
+SAME_SHARE, SAME_PLACE = 1e-9, 1e-6
+
+# Samples that share one exponential factor in the transform.
+BLOCK = 64
+
+# Frequencies transformed at a time: their factors stay within the processor's cache.
+CHUNK = 1024
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SampledGuideway:
+    """A guideway given by samples of its moving impulse response, at one speed and for some offsets.
+
+    Parameters
+    ----------
+    response : array_like, shape (time, offset)
+        Deflection [m] per unit impulse [N s] at points that leave each offset when the impulse strikes and travel
+        on at `speed`; the first row at the instant of the impulse.
+    time_step : float
+        Step between samples [s].
+    offsets : array_like, shape (offset,)
+        Receiver minus source [m], positive ahead.
+    speed : float
+        The speed [m/s].
+    critical_speed : float
+        Critical speed of the guideway [m/s], where it is known; inf otherwise.
+
+    Raises
+    ------
+    ValueError
+        If shapes disagree or a value is impossible.
+
+    Examples
+    --------
+    An impulse response 1e-6 · e^{−10 s} (a massless road on springs and dashpots) and its FRF at rest, 1e-7 m/N:
+
+    >>> time = 1e-3 * np.arange(4000)
+    >>> ringing = 1e-6 * np.exp(-10 * time)[:, None]
+    >>> road = SampledGuideway(response=ringing, time_step=1e-3, offsets=[0.0], speed=10.0)
+    >>> abs(road.moving_frf(0.0, 10.0, [0.0])).round(10).tolist()
+    [1e-07]
+    """
+
+    response: ArrayLike
+    time_step: float
+    offsets: ArrayLike
+    speed: float
+    critical_speed: float = np.inf
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        with checking() as check:
+            offsets = check.array("offsets", self.offsets, "m", (None,))
+            response = check.array("response", self.response, "m/(N s)", (None, offsets.size))
+            check.positive("time_step", self.time_step, "s")
+            check.finite("speed", self.speed, "m/s")
+            if not self.critical_speed > 0:
+                check.refuse("critical_speed", f"must be positive, got {self.critical_speed!r} m/s")
+            if not check.faults and (len(response) < 2 or not offsets.size):
+                check.refuse("response", "must hold at least two samples and one offset")
+        object.__setattr__(self, "offsets", offsets)
+        object.__setattr__(self, "response", response)
+
+    @property
+    def samples(self) -> FloatArray:
+        """The moving impulse response, shape (time, offset) [m/(N s)]."""
+        return np.asarray(self.response)
+
+    def columns(self, ahead: ArrayLike) -> IntArray:
+        """Find the columns of `response` that belong to some offsets.
+
+        Parameters
+        ----------
+        ahead : array_like, shape (*s)
+            Offsets [m].
+
+        Returns
+        -------
+        ndarray, shape (*s)
+            Numbers of columns.
+
+        Raises
+        ------
+        ValueError
+            If an offset was not recorded.
+        """
+        known, wanted = np.asarray(self.offsets), np.asarray(ahead, float)
+        nearest = np.abs(wanted[..., None] - known).argmin(axis=-1)
+        missing = np.abs(known[nearest] - wanted) > SAME_PLACE
+        if missing.any():
+            raise ValueError(
+                f"ahead must be one of the recorded offsets {known.tolist()} m, got {float(wanted[missing][0])!r} m"
+            )
+        return nearest
+
+    def require_speed(self, speed: float) -> None:
+        """Refuse any speed but the recorded one.
+
+        Parameters
+        ----------
+        speed : float
+            Speed that is asked for [m/s].
+
+        Raises
+        ------
+        ValueError
+            If it is another one.
+        """
+        if not abs(speed - self.speed) <= SAME_SHARE * max(abs(self.speed), 1.0):
+            raise ValueError(
+                f"speed must be {self.speed!r} m/s, at which the impulse response was recorded, got {speed!r} m/s"
+            )
+
+    def moving_frf(
+        self,
+        ahead: ArrayLike,
+        speed: float,
+        omega: ArrayLike,
+        *,
+        across: ArrayLike = 0.0,
+        derivative: int = 0,
+    ) -> ComplexArray:
+        """Deflection per unit force between points that travel together: the transform of the impulse response.
+
+        Parameters
+        ----------
+        ahead : array_like, shape (*s)
+            Receiver minus source [m]; recorded offsets only.
+        speed : float
+            Common speed of source and receiver [m/s]; the recorded one only.
+        omega : array_like, shape (frequency,)
+            Angular frequency in the moving frame [rad/s]; may be complex. Beyond half the sampling frequency the
+            record says nothing and the guideway counts as rigid.
+        across : array_like
+            Ignored [m].
+        derivative : int
+            Order of the derivative with respect to x: 0 only.
+
+        Returns
+        -------
+        ndarray, shape (frequency, *s), complex
+            Moving FRF [m/N].
+
+        Raises
+        ------
+        ValueError
+            If the speed, an offset or a derivative was not recorded.
+        """
+        self.require_speed(speed)
+        if derivative:
+            raise ValueError(f"derivative must be 0: the record holds deflections only, got {derivative!r}")
+        shape = np.broadcast_shapes(np.shape(ahead), np.shape(across))
+        chosen = self.columns(np.broadcast_to(np.asarray(ahead, float), shape).ravel())
+        distinct, back = np.unique(chosen, return_inverse=True)
+        frequencies = np.atleast_1d(np.asarray(omega, complex))
+        frf = np.zeros((frequencies.size, distinct.size), complex)
+        within = np.flatnonzero(np.abs(frequencies.real) <= np.pi / self.time_step)
+        for first in range(0, within.size, CHUNK):
+            some = within[first : first + CHUNK]
+            frf[some] = self._transformed(frequencies[some], distinct)
+        placed: ComplexArray = np.take(frf, back, axis=1).reshape(frequencies.size, *shape)
+        return placed
+
+    def _transformed(self, omega: ComplexArray, columns: IntArray) -> ComplexArray:
+        """Σ g(k Δt) e^{−iω k Δt} Δt, the first sample by half, in blocks of samples that share a factor."""
+        samples = self.samples[:, columns].copy()
+        samples[0] *= 0.5
+        blocks = -(-len(samples) // BLOCK)
+        padded = np.zeros((blocks * BLOCK, columns.size))
+        padded[: len(samples)] = samples
+        phase = -1j * self.time_step * omega[:, None]
+        within, between = np.exp(phase * np.arange(BLOCK)), np.exp(phase * (BLOCK * np.arange(blocks)))
+        frf: ComplexArray = np.empty((omega.size, columns.size), complex)
+        for column, record in enumerate(padded.T):
+            frf[:, column] = np.einsum("wb,wb->w", between, within @ record.reshape(blocks, BLOCK).T)
+        frf *= self.time_step
+        return frf

@@ -1,0 +1,502 @@
+"""Marching through time: a finite road and, on it, a vehicle or prescribed forces.
+
+Every method of this package that steps a road uses `March`: it factorises what is constant once and then advances,
+compiled where numba is installed and the road is a chain of beam elements, in NumPy and LAPACK otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy.sparse as sparse
+from scipy.linalg import lapack
+from scipy.sparse.linalg import splu
+
+from movingfrf._checks import FloatArray, IntArray, SolveError
+from movingfrf.progress import Progress, silent
+from movingfrf.reference.finite_guideway import SAME_PLACE, FiniteGuideway
+from movingfrf.reference.schemes import Scheme
+from movingfrf.vehicles.base import Vehicle
+
+# Steps between two looks at the keyboard, and how many unknowns times steps that may be.
+STRIDE, WORK = 20_000, 20_000_000
+
+# Entries of the inverse below this share of its diagonal are zero to rounding.
+NEGLIGIBLE = 1e-18
+
+# Bands wider than this are left to the sparse solver.
+WIDEST = 64
+
+
+class Law(NamedTuple):
+    """What happens at the contacts: a vehicle on springs and dashpots, or nothing but prescribed forces."""
+
+    mass: FloatArray  # (dof, dof)
+    damping: FloatArray  # (dof, dof)
+    stiffness: FloatArray  # (dof, dof)
+    contact_map: FloatArray  # (contact, dof)
+    springs: FloatArray  # (contact,) [N/m]
+    dashpots: FloatArray  # (contact,) [N s/m]
+
+
+def law_of(vehicle: Vehicle) -> Law:
+    """Matrices of a vehicle without its contacts, and its contacts."""
+    springs = np.array([contact.stiffness for contact in vehicle.contacts])
+    dashpots = np.array([contact.damping for contact in vehicle.contacts])
+    mass, damping, stiffness, contact_map = (np.ascontiguousarray(matrix) for matrix in vehicle.matrices)
+    return Law(mass, damping, stiffness, contact_map, springs, dashpots)
+
+
+def no_vehicle(contacts: int) -> Law:
+    """Prescribed forces only."""
+    none = np.zeros((0, 0))
+    return Law(none, none, none, np.zeros((contacts, 0)), np.zeros(contacts), np.zeros(contacts))
+
+
+class Iteration(NamedTuple):
+    """How contact forces are found in each step: solved for (tolerance 0), or exchanged until they agree."""
+
+    tolerance: float = 0.0  # relative change of the forces at which they agree
+    most: int = 50
+
+
+SOLVED = Iteration()
+
+
+@dataclass(slots=True)
+class State:
+    """Where a march has got to: displacement, velocity and acceleration of road and vehicle, forces on the road."""
+
+    road: FloatArray  # (3, dof)
+    body: FloatArray  # (3, vehicle dof)
+    acting: FloatArray  # (contact,)
+    # Elements by which a travelling road has moved on.
+    shifted: IntArray = field(default_factory=lambda: np.zeros(1, np.int64))
+
+    def copied(self) -> State:
+        """Return a state that can be marched on without changing this one."""
+        return State(self.road.copy(), self.body.copy(), self.acting.copy(), self.shifted.copy())
+
+
+class Record(NamedTuple):
+    """What was seen on the way; row k belongs to step k, row 0 to the state at the start."""
+
+    force: FloatArray  # (time, contact) contact force without what was prescribed
+    deflection: FloatArray  # (time, contact)
+    observed: FloatArray  # (time, observer) deflection
+    motion: FloatArray  # (time, dof)
+    acceleration: FloatArray  # (time, dof)
+    iterations: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class March:
+    """One road, one scheme, one set of contacts: everything that stays constant, factorised once.
+
+    Parameters
+    ----------
+    road : FiniteGuideway
+        The road.
+    scheme : Scheme
+        Row of the scheme.
+    time_step : float
+        Step in time [s].
+    speed : float
+        Speed of contacts and observers [m/s].
+    contacts, observers : ndarray
+        Where they stand at step 0 [m].
+    law : Law
+        What happens at the contacts.
+    iteration : Iteration
+        How contact forces are found.
+    compiled : bool, optional
+        Whether to use the compiled loops; None: where they apply and numba is installed.
+    """
+
+    road: FiniteGuideway
+    scheme: Scheme
+    time_step: float
+    speed: float
+    contacts: FloatArray
+    observers: FloatArray
+    law: Law
+    iteration: Iteration = SOLVED
+    compiled: bool | None = None
+
+    def at_rest(self, step: int = 0) -> State:
+        """Everything at zero, at a step of the journey."""
+        state = State(
+            np.zeros((3, self.road.dofs)), np.zeros((3, len(self.law.mass))), np.zeros(self.contacts.size)
+        )
+        if self.road.travels:
+            state.shifted[0] = self._elements(step)
+        return state
+
+    def places(self, step: int) -> FloatArray:
+        """Where the contacts stand at a step of the journey, seen from the road at rest there [m]."""
+        return self._places(self.contacts, step, self.at_rest(step))
+
+    def released(self, state: State, force: FloatArray) -> None:
+        """Give the road the acceleration that fits its displacement, its velocity and forces on it (dof,)."""
+        u, v, _ = state.road
+        force = force - self.road.stiffness @ u - self.road.damping @ v
+        state.road[2] = self.mass_solver.solve(force)
+
+    def run(
+        self,
+        steps: int,
+        state: State,
+        *,
+        roughness: FloatArray,
+        rate: FloatArray,
+        loads: FloatArray,
+        origin: int = 0,
+        stage: str = "stepping",
+        progress: Progress = silent,
+    ) -> Record:
+        """Advance by some steps; `state` is advanced in place.
+
+        Parameters
+        ----------
+        steps : int
+            Number of steps.
+        state : State
+            Where to start; where it has got to, afterwards.
+        roughness, rate : ndarray, shape (steps + 1, contact)
+            Elevation [m] and its rate of change [m/s] under the contacts.
+        loads : ndarray, shape (steps + 1, contact) or (1, contact)
+            Prescribed forces on the road [N]; one row: constant.
+        origin : int
+            Step of the journey at which `state` stands.
+        stage : str
+            Name of the stage for `progress`.
+        progress : callable
+            Called with the name of the stage and the fraction of it that is done.
+
+        Returns
+        -------
+        Record
+            With `steps + 1` rows.
+
+        Raises
+        ------
+        SolveError
+            If the exchange of contact forces does not come to agree, or a result is not finite.
+        """
+        contacts, dofs = self.contacts.size, len(self.law.mass)
+        widths = (contacts, contacts, self.observers.size, dofs, dofs)
+        record: list[FloatArray] = [np.empty((steps + 1, width)) for width in widths]
+        record[0][0] = state.acting - loads[0]
+        record[1][0], record[2][0] = (
+            self.road.rows(self._places(places, origin, state)) @ state.road[0]
+            for places in (self.contacts, self.observers)
+        )
+        record[3][0], record[4][0] = state.body[0], state.body[2]
+        stride = max(1, min(STRIDE, WORK // self.road.dofs))
+        advance = self._compiled if self.uses_compiled else self._plain
+        iterations, begin = 0, 0
+        while begin < steps:
+            end = min(begin + stride, steps)
+            failed, most = advance((origin, begin, end), state, roughness, rate, loads, record)
+            iterations = max(iterations, most)
+            if failed >= 0:
+                raise SolveError(
+                    f"the exchange of contact forces does not agree within {self.iteration.most} iterations "
+                    f"at {failed * self.time_step:.6g} s and {self.speed:g} m/s (relative tolerance "
+                    f"{self.iteration.tolerance:g}); a shorter time step than {self.time_step:g} s, or both sides "
+                    "solved as one system, is needed"
+                )
+            if not np.isfinite(record[1][end]).all() or not np.isfinite(record[3][end]).all():
+                raise SolveError(
+                    f"the response grows beyond floating-point range by {end * self.time_step:.6g} s at "
+                    f"{self.speed:g} m/s"
+                )
+            begin = end
+            progress(stage, end / steps)
+        force, deflection, observed, motion, acceleration = record
+        return Record(force, deflection, observed, motion, acceleration, iterations)
+
+    @property
+    def uses_compiled(self) -> bool:
+        """Whether the compiled loops are used: beam elements, a band of half-width three, and numba."""
+        suits = self.road.mesh is not None and _half_width(self.road.stiffness) <= 3 and self.road.dofs >= 9
+        if self.compiled is None:
+            return suits and numba_is_there()
+        return self.compiled and suits
+
+    @cached_property
+    def effective(self) -> sparse.csc_array:
+        """(1 − α_m) M + (1 − α_f)(γ Δt C + β Δt² K)."""
+        beta, gamma, alpha_m, alpha_f = self.scheme
+        dt = self.time_step
+        moving = gamma * dt * self.road.damping + beta * dt * dt * self.road.stiffness
+        return sparse.csc_array((1 - alpha_m) * self.road.mass + (1 - alpha_f) * moving)
+
+    @cached_property
+    def vehicle_inverse(self) -> FloatArray:
+        """Inverse of the same for the vehicle."""
+        beta, gamma, alpha_m, alpha_f = self.scheme
+        dt, law = self.time_step, self.law
+        moving = gamma * dt * law.damping + beta * dt * dt * law.stiffness
+        return np.linalg.inv((1 - alpha_m) * law.mass + (1 - alpha_f) * moving)
+
+    @cached_property
+    def mass_solver(self) -> _BandSolver | _SparseSolver:
+        """Solves with the road's mass matrix."""
+        return _solver(self.road.mass)
+
+    @cached_property
+    def _solver(self) -> _BandSolver | _SparseSolver:
+        return _solver(self.effective)
+
+    @cached_property
+    def _tables(self) -> dict[str, Any]:
+        """What the compiled loops read."""
+        from movingfrf.reference import compiled
+
+        road, n = self.road, self.road.dofs
+        bands = [_bands(matrix, 3) for matrix in (self.effective, road.mass, road.damping, road.stiffness)]
+        half = (n - 3) // 2
+        rows, columns = np.zeros((half, 6)), np.zeros((half, 8))
+        core: FloatArray = np.zeros((n - 2 * half, n - 2 * half))
+        smallest = compiled.factorise(bands[0], rows, columns, core)
+        if not smallest > 0 or not np.linalg.eigvalsh(core)[0] > 0:
+            raise _indefinite()
+        core = np.linalg.inv(core)
+        reach = self._reach(rows, columns, core)
+        first = np.zeros(n, np.int64)
+        needs_inverse = bool(len(self.law.mass))
+        inverse = compiled.influence(rows, columns, core, reach, first) if needs_inverse else np.zeros((1, 1))
+        mesh = road.mesh
+        assert mesh is not None
+        return {
+            "road": (*bands[1:], rows, columns, core, inverse, first),
+            "mesh": (np.array([mesh.first, mesh.element]), mesh.number.astype(np.int64), road.travels),
+        }
+
+    def _reach(self, rows: FloatArray, columns: FloatArray, core: FloatArray) -> int:
+        """Width outside which a row of the inverse is zero to rounding, judged in the middle of the road."""
+        from movingfrf.reference import compiled
+
+        n = self.road.dofs
+        reach = 0
+        for unknown in (n // 2, n // 2 + 1):
+            row = np.zeros(n)
+            row[unknown] = 1.0
+            compiled.solve(rows, columns, core, row, np.empty(len(core)))
+            seen = np.flatnonzero(np.abs(row) > NEGLIGIBLE * np.abs(row).max())
+            reach = max(reach, int(np.abs(seen - unknown).max()))
+        return min(n, 2 * reach + 4)
+
+    def _compiled(
+        self,
+        steps: tuple[int, int, int],
+        state: State,
+        roughness: FloatArray,
+        rate: FloatArray,
+        loads: FloatArray,
+        record: list[FloatArray],
+    ) -> tuple[int, int]:
+        from movingfrf.reference import compiled
+
+        law = self.law
+        loop: Callable[..., tuple[int, int]] = compiled.march
+        return loop(
+            np.array([self.time_step, *self.scheme]),
+            *self._tables["road"],
+            *self._tables["mesh"],
+            self.contacts,
+            self.observers,
+            float(self.speed),
+            self.vehicle_inverse,
+            *law,
+            np.ascontiguousarray(roughness),
+            np.ascontiguousarray(rate),
+            np.ascontiguousarray(loads),
+            float(self.iteration.tolerance),
+            self.iteration.most,
+            state.road,
+            state.body,
+            state.acting,
+            state.shifted,
+            *steps,
+            *record,
+        )
+
+    def _plain(
+        self,
+        steps: tuple[int, int, int],
+        state: State,
+        roughness: FloatArray,
+        rate: FloatArray,
+        loads: FloatArray,
+        record: list[FloatArray],
+    ) -> tuple[int, int]:
+        """Advance as `compiled.march` does, one array operation after the other."""
+        beta, gamma, alpha_m, alpha_f = self.scheme
+        dt, law, road, keep = self.time_step, self.law, self.road, 1 - alpha_f
+        mass, damping, stiffness = road.mass, road.damping, road.stiffness
+        (u, v, a), (z, dz, ddz) = state.road, state.body
+        free_u, free_v, lift_u, lift_v = (0.5 - beta) * dt * dt, (1 - gamma) * dt, beta * dt * dt, gamma * dt
+        lifted = -keep * self.vehicle_inverse @ law.contact_map.T
+        own = law.contact_map @ lifted
+        dashed = bool(law.dashpots.any())
+        contacts = self.contacts.size
+        worst = 0
+        origin, begin, end = steps
+        for step in range(begin + 1, end + 1):
+            if road.travels:
+                self._move_on(origin + step, state)
+            places = self._places(self.contacts, origin + step, state)
+            across = road.rows(places).toarray()
+            load = loads[min(step, len(loads) - 1)]
+            earlier = loads[min(step - 1, len(loads) - 1)]
+            at_u = u + keep * (dt * v + free_u * a)
+            at_v = v + keep * free_v * a
+            right = -(stiffness @ at_u) - damping @ at_v - (mass @ (alpha_m * a) if alpha_m else 0.0)
+            right += across.T @ (keep * load)
+            if alpha_f:
+                right += road.rows(self._places(self.contacts, origin + step - 1, state)).T @ (
+                    alpha_f * state.acting
+                )
+            solved = self._solver.solve(np.column_stack([right, keep * across.T]))
+            free_a, per_force = solved[:, 0], solved[:, 1:]
+            free_z, free_dz = z + dt * dz + free_u * ddz, dz + free_v * ddz
+            push = -law.stiffness @ (keep * free_z + alpha_f * z) - law.damping @ (keep * free_dz + alpha_f * dz)
+            push -= alpha_m * (law.mass @ ddz) + alpha_f * law.contact_map.T @ (state.acting - earlier)
+            free_ddz = self.vehicle_inverse @ push
+            moved = u + dt * v + free_u * a + lift_u * free_a
+            moving = v + free_v * a + lift_v * free_a
+            slopes = road.rows(places, 1).toarray() if dashed else np.zeros_like(across)
+            yields, yielding = across @ per_force, slopes @ per_force
+            gap = law.springs * (law.contact_map @ (free_z + lift_u * free_ddz) - across @ moved + roughness[step])
+            gap += law.dashpots * (
+                law.contact_map @ (free_dz + lift_v * free_ddz)
+                - across @ moving
+                - self.speed * (slopes @ moved)
+                + rate[step]
+            )
+            matrix = np.eye(contacts) + law.springs[:, None] * lift_u * (yields - own)
+            matrix += law.dashpots[:, None] * (lift_v * (yields - own) + self.speed * lift_u * yielding)
+            if not len(law.mass):
+                force: FloatArray = np.zeros(contacts)
+            elif self.iteration.tolerance:
+                force, count = _exchanged(matrix, gap, state.acting - earlier, self.iteration)
+                if count < 0:
+                    return step, worst
+                worst = max(worst, count)
+            else:
+                force = np.linalg.solve(matrix, gap)
+            new = free_a + per_force @ force
+            u += dt * v + free_u * a + lift_u * new
+            v += free_v * a + lift_v * new
+            a[:] = new
+            ddz[:] = free_ddz + lifted @ force
+            z[:] = free_z + lift_u * ddz
+            dz[:] = free_dz + lift_v * ddz
+            state.acting[:] = force + load
+            record[0][step], record[1][step] = force, across @ u
+            if self.observers.size:
+                record[2][step] = road.rows(self._places(self.observers, origin + step, state)) @ u
+            record[3][step], record[4][step] = z, ddz
+        return -1, worst
+
+    def _places(self, places: FloatArray, step: int, state: State) -> FloatArray:
+        """Where contacts or observers stand at a step of the journey, seen from the road."""
+        return places + (self.speed * self.time_step * step - state.shifted[0] * self.road.spacing)
+
+    def _elements(self, step: int) -> int:
+        """Whole elements that a travelling road has moved on by a step of the journey."""
+        return int(np.floor(self.speed * self.time_step * step / self.road.spacing + SAME_PLACE))
+
+    def _move_on(self, step: int, state: State) -> None:
+        """Let a travelling road follow by whole elements."""
+        mesh = self.road.mesh
+        assert mesh is not None
+        elements = self._elements(step) - int(state.shifted[0])
+        if elements > 0:
+            state.shifted[0] += elements
+            # Unknowns per element, all layers.
+            gone = elements * int(mesh.number[4] - mesh.number[2])
+            state.road[:, :-gone] = state.road[:, gone:].copy()
+            state.road[:, -gone:] = 0.0
+
+
+def _exchanged(
+    matrix: FloatArray, right: FloatArray, force: FloatArray, iteration: Iteration
+) -> tuple[FloatArray, int]:
+    """Exchange contact forces until they agree; −1 if they do not."""
+    for count in range(1, iteration.most + 1):
+        fresh = right + force - matrix @ force
+        change, size = np.abs(fresh - force).max(), np.abs(fresh).max()
+        force = fresh
+        if change <= iteration.tolerance * size or size < 1e-9:
+            return force, count
+        if not size < 1e30:
+            break
+    return force, -1
+
+
+def _indefinite() -> SolveError:
+    return SolveError(
+        "the road's matrices are inconsistent: mass, damping and stiffness together are not positive definite, so "
+        "no step can be taken"
+    )
+
+
+def _bands(matrix: sparse.csc_array, width: int) -> FloatArray:
+    """Lower bands of a symmetric matrix, `bands[d, i]` being A[i + d, i]."""
+    bands = np.zeros((width + 1, matrix.shape[0]))
+    for d in range(width + 1):
+        diagonal = matrix.diagonal(-d)
+        bands[d, : diagonal.size] = diagonal
+    return bands
+
+
+def _half_width(matrix: sparse.csc_array) -> int:
+    places = sparse.coo_array(matrix)
+    return int(np.abs(places.row - places.col).max(initial=0))
+
+
+def _solver(matrix: sparse.csc_array) -> _BandSolver | _SparseSolver:
+    """Factorise a positive definite matrix."""
+    return _BandSolver(matrix) if _half_width(matrix) <= WIDEST else _SparseSolver(matrix)
+
+
+class _BandSolver:
+    """LAPACK's band Cholesky factorisation."""
+
+    def __init__(self, matrix: sparse.csc_array) -> None:
+        self._factor, fails = lapack.dpbtrf(_bands(matrix, _half_width(matrix)), lower=1)
+        if fails:
+            raise _indefinite()
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solve for one or more columns."""
+        solution, _ = lapack.dpbtrs(self._factor, right, lower=1)
+        return solution
+
+
+class _SparseSolver:
+    """SuperLU, with the pivots of a symmetric matrix."""
+
+    def __init__(self, matrix: sparse.csc_array) -> None:
+        options = {"SymmetricMode": True}
+        self._factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        if not (self._factor.U.diagonal() > 0).all():
+            raise _indefinite()
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solve for one or more columns."""
+        return self._factor.solve(right)
+
+
+def numba_is_there() -> bool:
+    """Tell whether the compiled loops can be used."""
+    from importlib.util import find_spec
+
+    return find_spec("numba") is not None
