@@ -43,6 +43,7 @@ _WHERE = {
     "Scheme": "reference.schemes",
     "cdfm": "reference.coupled",
     "sim": "reference.coupled",
+    "compare": "comparison",
     "measures": "metrics.basic",
     "ParameterError": "_checks",
     "SolveError": "_checks",

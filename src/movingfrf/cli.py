@@ -22,9 +22,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from movingfrf.metrics.basic import Measure
+    from movingfrf.page import Table as TableForReading
 
 # Exit statuses.
 DONE, DEFECT, REFUSED, INTERRUPTED = 0, 1, 2, 130
+
+# Raised digits and minus signs → as they are typed.
+TYPED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
 
 # A computation shorter than this shows no progress [s].
 PATIENCE = 1.0
@@ -44,6 +48,9 @@ app = App(
 
     3. movingfrf run truck.toml --output out/truck solves it and writes result.nc (netCDF: xarray, MATLAB, ...),
     summary.json and report.html.
+
+    4. movingfrf compare truck.toml --output out/compared solves it by other methods too, stepping in time among
+    them, and says how long each takes and how far it is from the converged answer.
 
     Exit status: 0 done, 2 refused (a file, a value, a case without an answer), 130 interrupted, 1 a defect.""",
 )
@@ -144,6 +151,64 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
         console.print(f"wrote {folder / name}", soft_wrap=True)
 
 
+@app.command
+def compare(
+    file: Path,
+    /,
+    *,
+    methods: str | None = None,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    curve: bool = True,
+) -> None:
+    """Solve a scenario by several methods; compare their times, memory and errors.
+
+    Writes compare.json and compare.csv (the table), convergence.json and convergence.csv (errors over time for a
+    range of steps, times at equal error, how far the converged answer still moves) and report.html.
+
+    Parameters
+    ----------
+    file
+        The scenario.
+    methods
+        Names with commas between them: moving-frf, moving-frf-fe, moving-frf-fe-plain, duhamel, and with a vehicle
+        cdfm, cdfm-window, cdfm-weight, sim, with prescribed loads newmark, newmark-window; the usual ones by
+        default.
+    output
+        The folder to write into; out/NAME-compared beside the scenario by default.
+    curve
+        Whether to run all methods over a range of steps as well, which takes most of the time.
+    """
+    console = _console()
+    stages = _Stages()
+    with stages:
+        stages.report("loading", 0.0)
+        from movingfrf import comparison_output as written
+        from movingfrf.comparison import compare as compared
+        from movingfrf.comparison_report import render, tables
+        from movingfrf.output import replacing
+        from movingfrf.scenario import read_scenario
+
+        scenario = read_scenario(file)
+        folder = output if output is not None else file.parent / "out" / f"{scenario.name}-compared"
+        names = None if methods is None else [name.strip() for name in methods.split(",") if name.strip()]
+        with replacing(folder) as temporary:
+            found = compared(scenario, names, curve=curve, progress=stages.report)
+            stages.report("report.html", 0.0)
+            texts = {
+                "compare.json": written.as_json(found),
+                "compare.csv": written.table_as_csv(found),
+                "convergence.json": written.convergence_as_json(found),
+                "convergence.csv": written.curve_as_csv(found),
+                "report.html": render(found),
+            }
+            for name, text in texts.items():
+                (temporary / name).write_text(text, encoding="utf-8")
+    for table in tables(found):
+        _print_table(console, table)
+    for name in texts:
+        console.print(f"wrote {folder / name}", soft_wrap=True)
+
+
 def _console() -> Console:
     """Console that prints names as they are, whatever brackets or colons they hold."""
     return Console(highlight=False, markup=False, emoji=False)
@@ -215,6 +280,20 @@ def _print_result(console: Console, result: xr.Dataset, found: list[Measure]) ->
     console.print("Findings" if findings else "Findings: none", style="bold")
     for finding in findings:
         console.print(f"- {finding['message']}", soft_wrap=True)
+
+
+def _print_table(console: Console, table: TableForReading) -> None:
+    """Print a table as the report has it."""
+    console.print(table.caption, style="bold")
+    printed = Table(box=None, pad_edge=False)
+    printed.add_column(table.corner, no_wrap=True)
+    for column in table.columns:
+        printed.add_column(f"{column.name} [{column.units}]" if column.units else column.name, justify="right")
+    for row in table.rows:
+        # Powers of ten as they are typed, since a console breaks lines at spaces.
+        printed.add_row(row.name, *(cell.replace(" × 10", "e").translate(TYPED) for cell in row.cells))
+    console.print(printed)
+    console.print()
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -76,7 +76,8 @@ def drawing() -> Iterator[None]:
         yield
 
 
-def _figure(height: float) -> Figure:
+def blank(height: float) -> Figure:
+    """Make an empty figure of the page's width and some height [inch]."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(WIDTH, height), layout="constrained")
@@ -99,7 +100,8 @@ def _svg(figure: Figure, key: str, label: str) -> str:
     return Markup(svg.replace("<svg", f'<svg role="img" aria-label="{escape(label)}"', 1))
 
 
-def _illustration(key: str, heading: str, caption: str, figure: Figure) -> Illustration:
+def illustrated(key: str, heading: str, caption: str, figure: Figure) -> Illustration:
+    """Turn a figure into an illustration; `key` makes its ids unique on the page."""
     return Illustration(heading, _svg(figure, key, heading), caption)
 
 
@@ -132,7 +134,7 @@ def is_rough(result: xr.Dataset) -> bool:
 
 
 def _road_figure(result: xr.Dataset) -> Illustration:
-    figure = _figure(STACKED + SINGLE + 0.9)
+    figure = blank(STACKED + SINGLE + 0.9)
     above, below = figure.subplots(2, 1, height_ratios=(STACKED, SINGLE))
     plots.legend_above(plots.roughness(result, above))
     plots.legend_above(plots.roughness_spectrum(result, below))
@@ -140,7 +142,7 @@ def _road_figure(result: xr.Dataset) -> Illustration:
         "The road under the foremost contact of each path: elevation over distance, and its spectrum among the "
         "centre lines of the ISO 8608 classes A (smooth) to H (rough). " + _class_words(result)
     )
-    return _illustration("road", "Road surface", caption, figure)
+    return illustrated("road", "Road surface", caption, figure)
 
 
 def _class_words(result: xr.Dataset) -> str:
@@ -189,14 +191,14 @@ def _frf_figures(result: xr.Dataset, guideway: Guideway, offsets: list[float]) -
     highest = _frf_end(0.5 / wording.time_step(result), truncation, frf)
     frequency = np.linspace(0.0, highest, FRF_POINTS)
     values = frf(frequency, offsets)
-    figure = _figure(SINGLE + STACKED + 1.2)
+    figure = blank(SINGLE + STACKED + 1.2)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(SINGLE, STACKED + 0.5))
     mark = truncation if truncation < highest else None
     plots.legend_above(plots.frf_amplitude(frequency, values, offsets, above, truncation=mark))
     plots.frf_phase(frequency, values, offsets, below, truncation=mark)
     above.set_xlabel("")
     beyond = "the road counts as rigid" if "contact_force" in result else "the response is left out"
-    return [_illustration("frf", "Moving FRFs of the road", _frf_words(values, offsets, mark, beyond), figure)]
+    return [illustrated("frf", "Moving FRFs of the road", _frf_words(values, offsets, mark, beyond), figure)]
 
 
 def _frf_end(
@@ -229,7 +231,7 @@ def _panels(
     count: int, draw: Callable[[int, Axes], object], colours: Sequence[str], names: Sequence[str]
 ) -> Figure:
     """Panels of equal height below each other, on common axes."""
-    figure = _figure(max(PANEL * count, SINGLE - 0.4) + 0.5)
+    figure = blank(max(PANEL * count, SINGLE - 0.4) + 0.5)
     axes = figure.subplots(count, 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     for panel, ax in enumerate(axes):
         draw(panel, ax)
@@ -256,7 +258,7 @@ def _forces_figure(result: xr.Dataset) -> Illustration:
         else "The road is smooth, so the forces stay at their static level."
     )
     words += wording.some_of(result.sizes["contact"], plots.MOST_CURVES, "contacts")
-    return _illustration("forces", "Contact forces", words, figure)
+    return illustrated("forces", "Contact forces", words, figure)
 
 
 def _peak_force(result: xr.Dataset) -> tuple[float, float, int]:
@@ -277,7 +279,7 @@ def _zoom_figures(result: xr.Dataset) -> list[Illustration]:
     chosen = [curve.column for curve in plots.contact_curves(result)]
     if contact not in chosen:
         chosen = [contact]
-    figure = _figure(SINGLE)
+    figure = blank(SINGLE)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     plots.contact_forces(result, ax, contacts=chosen, interval=(first, first + ZOOM))
     for line in ax.lines:
@@ -288,11 +290,11 @@ def _zoom_figures(result: xr.Dataset) -> list[Illustration]:
         "Wheels in one path meet the same spot one after the other: look for the same event with its delay. "
         "Dashed: the static levels."
     )
-    return [_illustration("zoom", "Contact forces around the peak", caption, figure)]
+    return [illustrated("zoom", "Contact forces around the peak", caption, figure)]
 
 
 def _force_spectra_figure(result: xr.Dataset) -> Illustration:
-    figure = _figure(SINGLE + 0.3)
+    figure = blank(SINGLE + 0.3)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     plots.legend_above(plots.contact_force_spectra(result, ax))
     caption = (
@@ -301,7 +303,7 @@ def _force_spectra_figure(result: xr.Dataset) -> Illustration:
         "tyres. The frequency axis covers 99.99 % of the variance, and the truncation."
     )
     caption += wording.some_of(result.sizes["contact"], plots.MOST_CURVES, "contacts")
-    return _illustration("force-spectra", "Contact-force spectra", caption, figure)
+    return illustrated("force-spectra", "Contact-force spectra", caption, figure)
 
 
 def _deflections_figure(result: xr.Dataset) -> Illustration:
@@ -321,13 +323,13 @@ def _deflections_figure(result: xr.Dataset) -> Illustration:
         f"at {result.time.values[place]:.6g} s."
     )
     caption += wording.some_of(result.sizes["contact"], plots.MOST_CURVES, "contacts")
-    return _illustration("deflections", "Deflections under the contacts", caption, figure)
+    return illustrated("deflections", "Deflections under the contacts", caption, figure)
 
 
 def _accelerations_figure(result: xr.Dataset) -> Illustration:
     total = result.sizes["dof"]
     dofs = plots.shown(total, MOST_DOFS)
-    figure = _figure((PANEL + 0.15) * max(len(dofs), 2) + 0.4)
+    figure = blank((PANEL + 0.15) * max(len(dofs), 2) + 0.4)
     axes = figure.subplots(len(dofs), 2, sharex="col", squeeze=False, width_ratios=(3, 2))
     for row, dof in zip(axes, dofs, strict=True):
         plots.accelerations(result, dof, row[0])
@@ -345,20 +347,20 @@ def _accelerations_figure(result: xr.Dataset) -> Illustration:
         "of freedom moves most."
     )
     caption += wording.some_of(total, MOST_DOFS, "degrees of freedom")
-    return _illustration("accelerations", "Accelerations of the vehicle", caption, figure)
+    return illustrated("accelerations", "Accelerations of the vehicle", caption, figure)
 
 
 def _prescribed_figure(result: xr.Dataset) -> Illustration:
-    figure = _figure(SINGLE)
+    figure = blank(SINGLE)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     plots.legend_above(plots.prescribed_forces(result, ax))
     caption = "The forces on the road, as prescribed; a force that is not zero at t = 0 is switched on there."
     caption += wording.some_of(result.sizes["load"], plots.MOST_CURVES, "loads")
-    return _illustration("prescribed", "Prescribed forces", caption, figure)
+    return illustrated("prescribed", "Prescribed forces", caption, figure)
 
 
 def _point_deflections_figure(result: xr.Dataset) -> Illustration:
-    figure = _figure(SINGLE)
+    figure = blank(SINGLE)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     plots.legend_above(plots.deflections(result, ax))
     caption = (
@@ -366,11 +368,11 @@ def _point_deflections_figure(result: xr.Dataset) -> Illustration:
         "for how far the first swing exceeds the level that follows."
     )
     caption += wording.some_of(result.sizes["point"], plots.MOST_CURVES, "points")
-    return _illustration("deflections", "Deflections", caption, figure)
+    return illustrated("deflections", "Deflections", caption, figure)
 
 
 def _loaded_spectra_figure(result: xr.Dataset) -> Illustration:
-    figure = _figure(2 * SINGLE)
+    figure = blank(2 * SINGLE)
     above, below = figure.subplots(2, 1)
     plots.legend_above(plots.prescribed_force_spectra(result, above))
     plots.legend_above(plots.deflection_spectra(result, below))
@@ -378,4 +380,4 @@ def _loaded_spectra_figure(result: xr.Dataset) -> Illustration:
         "Amplitude spectral densities of forces and deflections, means removed (one-sided). Where the deflections "
         "fall faster than the forces, the road is stiff."
     )
-    return _illustration("spectra", "Spectra of forces and deflections", caption, figure)
+    return illustrated("spectra", "Spectra of forces and deflections", caption, figure)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from movingfrf._checks import checking
 from movingfrf.vehicles.base import Vehicle
 
@@ -64,3 +67,14 @@ class Journey:
         """First and last distance that a contact meets [m]."""
         positions = self.start + vehicle.positions
         return float(positions.min()), float(positions.max()) + self.speed * self.time_step * self.samples
+
+    def coordinates(self, vehicle: Vehicle) -> dict[str, ArrayLike]:
+        """Coordinates of a coupled result by their names in the schema: times, contacts, degrees of freedom."""
+        return {
+            "time": np.arange(self.samples) * self.time_step,
+            "contact": np.arange(len(vehicle.contacts)),
+            "position": vehicle.positions,
+            "path": np.array([contact.path for contact in vehicle.contacts]),
+            "dof": np.array(vehicle.dof_names),
+            "dof_unit": np.where(np.asarray(vehicle.vertical) == 0, "rad", "m"),
+        }

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import json
-import math
 import os
 import shutil
 import tempfile
@@ -13,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from movingfrf._checks import finite
 from movingfrf.metrics.basic import Measure
 
 if TYPE_CHECKING:
@@ -99,13 +99,4 @@ def summary(result: xr.Dataset, found: list[Measure]) -> str:
         "measures": [measure._asdict() for measure in found],
         "findings": json.loads(result.attrs["findings"]),
     }
-    return json.dumps(_finite(content), indent=1, ensure_ascii=False) + "\n"
-
-
-def _finite(value: Any) -> Any:
-    """JSON knows no infinity."""
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_finite(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    return json.dumps(finite(content), indent=1, ensure_ascii=False) + "\n"

@@ -4,53 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from importlib.resources import files
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from movingfrf import illustrations, plots, wording
 from movingfrf.guideways.base import Guideway
 from movingfrf.metrics.basic import Measure, measures
+from movingfrf.page import Column, Row, Setting, Table, page
 from movingfrf.wording import number, plain
 
 if TYPE_CHECKING:
     import xarray as xr
 
 SCALES = {"N": ("kN", 1e-3), "m": ("mm", 1e3), "1": ("", 1.0)}
-
-
-class Setting(NamedTuple):
-    """One line of the head: what was set, to which value, and what to know about it."""
-
-    name: str
-    value: str
-    note: str = ""
-    wide: bool = False
-
-
-class Column(NamedTuple):
-    """Head of a column."""
-
-    name: str
-    units: str
-
-
-class Row(NamedTuple):
-    """One row of a table, with the colour of its curves."""
-
-    name: str
-    cells: list[str]
-    colour: str = ""
-
-
-class Table(NamedTuple):
-    """A table for reading."""
-
-    caption: str
-    corner: str
-    columns: list[Column]
-    rows: list[Row]
 
 
 def render(result: xr.Dataset, *, guideway: Guideway, scenario_text: str = "", title: str = "") -> str:
@@ -72,16 +39,12 @@ def render(result: xr.Dataset, *, guideway: Guideway, scenario_text: str = "", t
     str
         One HTML page without references to anything outside it. Equal input gives equal text.
     """
-    from jinja2 import Environment, StrictUndefined
-
     coupled = "contact_force" in result
     with illustrations.drawing():
         figures = (
             illustrations.of_coupled(result, guideway) if coupled else illustrations.of_loads(result, guideway)
         )
-    template = files("movingfrf").joinpath("templates", "report.html.j2").read_text(encoding="utf-8")
-    environment = Environment(autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True)
-    return environment.from_string(template).render(
+    return page(
         title=title or result.attrs.get("title", "Response of a guideway"),
         version=result.attrs.get("movingfrf", "of unknown version"),
         summary=_coupled_summary(result) if coupled else _loaded_summary(result),

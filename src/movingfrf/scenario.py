@@ -90,6 +90,8 @@ class Scenario:
         The profile; None with prescribed loads.
     loads : Loads, optional
         The prescribed loads; None with a vehicle.
+    folder : Path
+        Folder to which paths in the text are relative.
     """
 
     name: str
@@ -99,6 +101,7 @@ class Scenario:
     vehicle: Vehicle | None = None
     road: Road | None = None
     loads: Loads | None = None
+    folder: Path = Path()
 
     def run(self, progress: Progress = silent) -> xr.Dataset:
         """Compute the response.
@@ -352,7 +355,9 @@ class _Builder:
                 )
             if self.faults:
                 return None
-            return Scenario(name=name, text=text, guideway=guideway, journey=journey, loads=found)
+            return Scenario(
+                name=name, text=text, guideway=guideway, journey=journey, loads=found, folder=self.folder
+            )
         vehicle = self._section(tables, "vehicle", "vehicle")
         interval = SOME_INTERVAL
         if journey is not None and vehicle is not None:
@@ -365,7 +370,15 @@ class _Builder:
             self._attempt("roughness:", lambda: require_cover(road.profile, *interval, paths))
         if self.faults:
             return None
-        return Scenario(name=name, text=text, guideway=guideway, journey=journey, vehicle=vehicle, road=road)
+        return Scenario(
+            name=name,
+            text=text,
+            guideway=guideway,
+            journey=journey,
+            vehicle=vehicle,
+            road=road,
+            folder=self.folder,
+        )
 
     def _section(self, tables: Mapping[str, Any], key: str, family: str, **given: Any) -> Any:
         return self._built(tables[key], family, key, **given) if key in tables else None

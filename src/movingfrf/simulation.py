@@ -160,12 +160,7 @@ def simulate(
     deflection = response.deflection.values
     deflection += steady.deflection
     values = {
-        "time": grid.time,
-        "contact": np.arange(len(vehicle.contacts)),
-        "position": vehicle.positions,
-        "path": np.array([contact.path for contact in vehicle.contacts]),
-        "dof": np.array(vehicle.dof_names),
-        "dof_unit": np.where(np.asarray(vehicle.vertical) == 0, "rad", "m"),
+        **journey.coordinates(vehicle),
         "contact_force": response.force.values,
         "static_load": steady.load,
         "deflection": deflection,

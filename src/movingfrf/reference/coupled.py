@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,7 +13,7 @@ from movingfrf._checks import Checks, FloatArray, SolveError, checking, require_
 from movingfrf.journey import Journey
 from movingfrf.progress import Progress, silent
 from movingfrf.reference.finite_guideway import SAME_PLACE, FiniteGuideway
-from movingfrf.reference.marching import Iteration, March, State, law_of, no_vehicle
+from movingfrf.reference.marching import SOLVED, Iteration, March, State, law_of, no_vehicle
 from movingfrf.reference.schemes import Scheme, scheme_named
 from movingfrf.roughness.excitation import Excitation, excite
 from movingfrf.roughness.profiles import Profile
@@ -130,17 +131,15 @@ def cdfm(
     >>> dict(result.sizes)
     {'time': 500, 'contact': 1, 'dof': 2}
     """
-    return _travelled(
+    return prepared(
         Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend),
         (road, vehicle, profile),
         scheme=scheme,
-        iteration=Iteration(),
         superposed=superposed,
         run_in=run_in,
         compiled=compiled,
-        method="coupled method (CDFM)",
         progress=progress,
-    )
+    )()
 
 
 def sim(
@@ -224,7 +223,7 @@ def sim(
     with checking() as check:
         check.positive("tolerance", tolerance, "1")
         check.whole("iterations", iterations, least=1)
-    return _travelled(
+    return prepared(
         Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend),
         (road, vehicle, profile),
         scheme=scheme,
@@ -232,24 +231,39 @@ def sim(
         superposed=superposed,
         run_in=run_in,
         compiled=compiled,
-        method="separate iterative method (SIM)",
         progress=progress,
-    )
+    )()
 
 
-def _travelled(
+def prepared(
     journey: Journey,
     parts: tuple[FiniteGuideway, Vehicle, Profile],
     *,
-    scheme: str | Scheme,
-    iteration: Iteration,
-    superposed: bool,
-    run_in: float,
-    compiled: bool | None,
-    method: str,
-    progress: Progress,
-) -> xr.Dataset:
-    """Step a journey, whatever way the contact forces are found."""
+    scheme: str | Scheme = "average_acceleration",
+    iteration: Iteration = SOLVED,
+    superposed: bool = False,
+    run_in: float = 1.0,
+    compiled: bool | None = None,
+    progress: Progress = silent,
+) -> Callable[[], xr.Dataset]:
+    """Check and prepare a journey: everything that comes before its first step.
+
+    Parameters
+    ----------
+    journey : Journey
+        How the vehicle travels.
+    parts : tuple of FiniteGuideway, Vehicle and Profile
+        Who travels on what.
+    scheme, superposed, run_in, compiled, progress
+        As for `cdfm`.
+    iteration : Iteration
+        How contact forces are found in each step.
+
+    Returns
+    -------
+    callable
+        Steps through the journey, once, and returns the result of `cdfm` or `sim`.
+    """
     road, vehicle, profile = parts
     with checking() as check:
         check.not_negative("run_in", run_in, "s")
@@ -276,41 +290,27 @@ def _travelled(
     excitation = seen_in_time(profile, vehicle, journey)
     run_in_steps = round(run_in / journey.time_step)
     steady, state = steady_travel(march, vehicle, run_in_steps, progress)
-    assert excitation.rate is not None
-    record = march.run(
-        journey.samples - 1,
-        march.at_rest() if superposed else state,
-        roughness=excitation.roughness,
-        rate=excitation.rate,
-        loads=np.zeros((1, positions.size)) if superposed else vehicle.static_loads[None],
-        progress=progress,
-    )
-    force, deflection, motion = record.force, record.deflection, record.motion
-    if superposed:
-        deflection += steady.deflection
-    else:
-        force += vehicle.static_loads - steady.load
-        motion -= steady.motion
-    values = {
-        "time": np.arange(journey.samples) * journey.time_step,
-        "contact": np.arange(len(vehicle.contacts)),
-        "position": vehicle.positions,
-        "path": np.array([contact.path for contact in vehicle.contacts]),
-        "dof": np.array(vehicle.dof_names),
-        "dof_unit": np.where(np.asarray(vehicle.vertical) == 0, "rad", "m"),
-        "contact_force": force,
-        "static_load": steady.load,
-        "deflection": deflection,
-        "static_deflection": steady.deflection,
-        "motion": motion,
-        "acceleration": record.acceleration,
-        "roughness": excitation.roughness,
-    }
-    return labelled(
-        values,
-        COUPLED,
-        {
-            "title": f"Coupled response of a vehicle and a finite road: {method}",
+    march.prepare()
+
+    def step() -> xr.Dataset:
+        assert excitation.rate is not None
+        record = march.run(
+            journey.samples - 1,
+            march.at_rest() if superposed else state,
+            roughness=excitation.roughness,
+            rate=excitation.rate,
+            loads=np.zeros((1, positions.size)) if superposed else vehicle.static_loads[None],
+            progress=progress,
+        )
+        force, deflection, motion = record.force, record.deflection, record.motion
+        if superposed:
+            deflection += steady.deflection
+        else:
+            force += vehicle.static_loads - steady.load
+            motion -= steady.motion
+        name = "separate iterative method (SIM)" if iteration.tolerance else "coupled method (CDFM)"
+        attributes: dict[str, str | float | int] = {
+            "title": f"Coupled response of a vehicle and a finite road: {name}",
             "movingfrf": VERSION,
             "speed": float(journey.speed),
             "duration": float(journey.duration),
@@ -323,8 +323,19 @@ def _travelled(
             "road_spacing": float(road.spacing),
             "iterations": record.iterations,
             "findings": find.announced(find.contact_lost(force + steady.load, journey.time_step)),
-        },
-    )
+        }
+        values = {
+            "contact_force": force,
+            "static_load": steady.load,
+            "deflection": deflection,
+            "static_deflection": steady.deflection,
+            "motion": motion,
+            "acceleration": record.acceleration,
+            "roughness": excitation.roughness,
+        }
+        return labelled({**journey.coordinates(vehicle), **values}, COUPLED, attributes)
+
+    return step
 
 
 def seen_in_time(profile: Profile, vehicle: Vehicle, journey: Journey) -> Excitation:
@@ -411,7 +422,7 @@ def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress
     yields = march.road.rows(march.places(-steps)) @ sags
     load = np.linalg.solve(np.eye(len(held)) + held @ yields, vehicle.static_loads)
     deflection = yields @ load
-    alone = replace(march, law=no_vehicle(march.contacts.size), iteration=Iteration())
+    alone = replace(march, law=no_vehicle(march.contacts.size), iteration=SOLVED)
     nothing = np.zeros((steps + 1, march.contacts.size))
     for _ in range(MOST_ROUNDS):
         state = alone.at_rest(-steps)

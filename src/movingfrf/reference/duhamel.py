@@ -130,12 +130,7 @@ def duhamel(
         progress("convolving", end / (samples - 1))
     force, deflection, motion, acceleration = (values.T for values in record)
     values = {
-        "time": time_step * np.arange(samples),
-        "contact": np.arange(positions.size),
-        "position": positions,
-        "path": np.array([contact.path for contact in vehicle.contacts]),
-        "dof": np.array(vehicle.dof_names),
-        "dof_unit": np.where(np.asarray(vehicle.vertical) == 0, "rad", "m"),
+        **journey.coordinates(vehicle),
         "contact_force": force,
         "static_load": load,
         "deflection": deflection + steady,

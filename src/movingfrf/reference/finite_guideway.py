@@ -283,7 +283,7 @@ def finite_track(
     layers = _layers(track)
     with checking() as check:
         bending = track.beam.bending_stiffness
-        bends_over = (4 * bending / layers.support) ** 0.25
+        bends_over = bending_length(track)
         wavenumber = (
             max(track.beam.mass * (2 * np.pi * band) ** 2 - layers.stiffness[0, 0], 0.0) / bending
         ) ** 0.25
@@ -337,6 +337,22 @@ def finite_track(
         mesh=mesh,
         travels=travels,
     )
+
+
+def bending_length(track: Track) -> float:
+    """Length (4 EI/k)^¼ over which a track bends under a load at rest [m].
+
+    Parameters
+    ----------
+    track : Track
+        The track.
+
+    Returns
+    -------
+    float
+        With k the stiffness of all its layers in series.
+    """
+    return float((4 * track.beam.bending_stiffness / _layers(track).support) ** 0.25)  # type: ignore[attr-defined]
 
 
 class _Layers(NamedTuple):

@@ -179,6 +179,7 @@ def struck_track(
     speed: float,
     offsets: ArrayLike,
     plain: bool = False,
+    time_step: float | None = None,
     band: float = 70.0,
     compiled: bool | None = None,
     progress: Progress = silent,
@@ -196,6 +197,8 @@ def struck_track(
     plain : bool
         Whether to do as the paper does: simply supported ends, elements of 0.5 m, steps of 1 ms. Otherwise four
         roads whose end reflections cancel are averaged, with elements of 0.25 m and steps of 0.1 ms.
+    time_step : float, optional
+        Another step [s].
     band : float
         Highest frequency that is wanted [Hz].
     compiled : bool, optional
@@ -229,7 +232,7 @@ def struck_track(
         speed=speed,
         offsets=offsets,
         strike=0.0,
-        time_step=recipe.time_step,
+        time_step=recipe.time_step if time_step is None else time_step,
         band=band,
         critical_speed=track.critical_speed,
         scheme=recipe.scheme,

@@ -146,6 +146,11 @@ class March:
         force = force - self.road.stiffness @ u - self.road.damping @ v
         state.road[2] = self.mass_solver.solve(force)
 
+    def prepare(self) -> None:
+        """Factorise now what the first step would otherwise factorise."""
+        _ = self._tables if self.uses_compiled else self._solver
+        _ = self.vehicle_inverse
+
     def run(
         self,
         steps: int,

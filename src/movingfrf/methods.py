@@ -1,0 +1,339 @@
+"""The methods that can be compared, each a function that prepares a case and returns what solves it."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from movingfrf._checks import FloatArray
+from movingfrf.guideways.base import Guideway
+from movingfrf.guideways.track import EulerBernoulliBeam, Track
+from movingfrf.journey import Journey
+from movingfrf.progress import Progress, silent
+from movingfrf.reference.coupled import prepared
+from movingfrf.reference.duhamel import duhamel, duhamel_loads
+from movingfrf.reference.finite_guideway import FiniteGuideway, bending_length, finite_track
+from movingfrf.reference.impulse import CANCELLING, struck_track
+from movingfrf.reference.marching import SOLVED, Iteration
+from movingfrf.reference.moving_load import newmark_loads
+from movingfrf.scenario import Scenario
+from movingfrf.simulation import moving_loads, simulate
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# Road in front of and behind the vehicle, and how much of it absorbs, in lengths (4 EI/k)^¼ over which it bends.
+AROUND, ABSORBING = 20.0, 17.0
+
+# Elements that are tried, in the same lengths (rounded).
+ELEMENTS = (0.3, 0.15)
+
+# Time for which weights travel over the smooth road before a stepped record begins [s].
+RUN_IN = 1.0
+
+# Shortest step of the struck road, of which the step of Duhamel's integral is a whole multiple [s].
+STRIKE_STEP = CANCELLING.time_step
+
+Solve = Callable[[], "xr.Dataset"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Case:
+    """A scenario with its step and the length of the road's elements.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The scenario.
+    time_step : float
+        Step in time [s].
+    element : float
+        Length of an element [m].
+    """
+
+    scenario: Scenario
+    time_step: float
+    element: float
+
+    @property
+    def journey(self) -> Journey:
+        """The scenario's journey in this case's steps."""
+        return replace(self.scenario.journey, time_step=self.time_step)
+
+    @property
+    def track(self) -> Track:
+        """The guideway, known to be a track of beam and foundation."""
+        assert isinstance(self.scenario.guideway, Track)
+        return self.scenario.guideway
+
+    @property
+    def places(self) -> FloatArray:
+        """Where contacts, or loads and observers, stand, ahead of the reference point [m]."""
+        if self.scenario.loads is not None:
+            return np.concatenate([self.scenario.loads.positions, self.scenario.loads.observe])
+        assert self.scenario.vehicle is not None
+        return self.scenario.vehicle.positions
+
+    @property
+    def offsets(self) -> FloatArray:
+        """Every distance from a contact or load to a contact or observer [m]."""
+        loads = self.scenario.loads
+        sources = self.places if loads is None else loads.positions
+        receivers = self.places if loads is None else loads.observe
+        return np.unique(np.round(receivers[:, None] - sources, 9))
+
+    def forces(self) -> FloatArray:
+        """Prescribed forces at this case's steps, shape (time, load) [N]."""
+        assert self.scenario.loads is not None
+        at = np.arange(self.journey.samples) * self.time_step
+        return np.stack([history(at) for history in self.scenario.loads.histories], axis=1)
+
+    def road(self, *, travels: bool) -> FiniteGuideway:
+        """Cut out what the journey needs: all of it, or what travels along."""
+        around = AROUND * bending_length(self.track)
+        first, last = self.places.min() - around, self.places.max() + around
+        if not travels:
+            journey = self.journey
+            before = RUN_IN * journey.speed if self.scenario.loads is None else 0.0
+            first += journey.start - before
+            last += journey.start + journey.speed * journey.time_step * journey.samples
+        return finite_track(
+            self.track,
+            first=float(first),
+            last=float(last),
+            element=self.element,
+            absorbing=ABSORBING * bending_length(self.track),
+            travels=travels,
+        )
+
+
+def _transformed(case: Case, guideway: Guideway) -> Solve:
+    """Solve in the frequency domain, on any guideway."""
+    scenario, journey = case.scenario, case.journey
+    if scenario.loads is not None:
+        loads = scenario.loads
+        return lambda: moving_loads(
+            guideway,
+            case.forces(),
+            loads.positions,
+            speed=journey.speed,
+            time_step=journey.time_step,
+            observe=loads.observe,
+            truncation=journey.truncation,
+        )
+    assert scenario.vehicle is not None
+    assert scenario.road is not None
+    vehicle, profile = scenario.vehicle, scenario.road.profile
+    return lambda: simulate(
+        guideway,
+        vehicle,
+        profile,
+        speed=journey.speed,
+        duration=journey.duration,
+        start=journey.start,
+        time_step=journey.time_step,
+        truncation=journey.truncation,
+        blend=journey.blend,
+    )
+
+
+def _moving_frf(case: Case) -> Solve:
+    return _transformed(case, case.scenario.guideway)
+
+
+def _moving_frf_fe(case: Case, *, plain: bool = False) -> Solve:
+    struck = struck_track(case.track, speed=case.journey.speed, offsets=case.offsets, plain=plain)
+    return _transformed(case, struck)
+
+
+def _moving_frf_fe_plain(case: Case) -> Solve:
+    return _moving_frf_fe(case, plain=True)
+
+
+def _duhamel(case: Case) -> Solve:
+    scenario, journey = case.scenario, case.journey
+    struck = struck_track(
+        case.track,
+        speed=journey.speed,
+        offsets=case.offsets,
+        time_step=case.time_step / math.ceil(case.time_step / STRIKE_STEP - 1e-9),
+    )
+    if scenario.loads is not None:
+        loads = scenario.loads
+        return lambda: duhamel_loads(
+            struck,
+            case.forces(),
+            loads.positions,
+            speed=journey.speed,
+            time_step=journey.time_step,
+            observe=loads.observe,
+        )
+    assert scenario.vehicle is not None
+    assert scenario.road is not None
+    vehicle, profile = scenario.vehicle, scenario.road.profile
+    return lambda: duhamel(
+        struck,
+        vehicle,
+        profile,
+        speed=journey.speed,
+        duration=journey.duration,
+        start=journey.start,
+        time_step=journey.time_step,
+        blend=journey.blend,
+    )
+
+
+def stepped(
+    case: Case,
+    *,
+    travels: bool = False,
+    superposed: bool = True,
+    iteration: Iteration = SOLVED,
+    progress: Progress = silent,
+) -> Solve:
+    """Step vehicle and road; the weight in a run of its own, since the road is the same everywhere."""
+    scenario, road = case.scenario, case.road(travels=travels)
+    assert scenario.vehicle is not None
+    assert scenario.road is not None
+    return prepared(
+        case.journey,
+        (road, scenario.vehicle, scenario.road.profile),
+        iteration=iteration,
+        superposed=superposed,
+        run_in=RUN_IN,
+        progress=progress,
+    )
+
+
+def _cdfm(case: Case) -> Solve:
+    return stepped(case)
+
+
+def _cdfm_window(case: Case) -> Solve:
+    return stepped(case, travels=True)
+
+
+def _cdfm_weight(case: Case) -> Solve:
+    return stepped(case, superposed=False)
+
+
+def _sim(case: Case) -> Solve:
+    return stepped(case, iteration=Iteration(1e-10))
+
+
+def newmark(case: Case, *, travels: bool = False, progress: Progress = silent) -> Solve:
+    """Step the road under prescribed loads."""
+    loads, journey, road = case.scenario.loads, case.journey, case.road(travels=travels)
+    assert loads is not None
+    return lambda: newmark_loads(
+        road,
+        case.forces(),
+        loads.positions,
+        speed=journey.speed,
+        time_step=journey.time_step,
+        observe=loads.observe,
+        progress=progress,
+    )
+
+
+def _newmark_window(case: Case) -> Solve:
+    return newmark(case, travels=True)
+
+
+class Method(NamedTuple):
+    """What prepares a case, what the method does in a few words, and whether it divides the whole road."""
+
+    prepare: Callable[[Case], Solve]
+    words: str
+    divides: bool = False  # into elements whose length matters
+
+
+WITH_VEHICLE: dict[str, Method] = {
+    "moving-frf": Method(_moving_frf, "moving FRF in closed form"),
+    "moving-frf-fe": Method(_moving_frf_fe, "moving FRF of 40 m of finite elements, end reflections cancelled"),
+    "moving-frf-fe-plain": Method(_moving_frf_fe_plain, "moving FRF of 40 m of finite elements, as in the paper"),
+    "duhamel": Method(_duhamel, "Duhamel's integral with the moving impulse response of the finite elements"),
+    "cdfm": Method(_cdfm, "coupled method, the whole road", True),
+    "cdfm-window": Method(_cdfm_window, "coupled method, a stretch of road that travels along", True),
+    "cdfm-weight": Method(_cdfm_weight, "coupled method, the whole road, the weight stepped as well", True),
+    "sim": Method(_sim, "separate iterative method, the whole road", True),
+}
+WITH_LOADS: dict[str, Method] = {
+    **{name: WITH_VEHICLE[name] for name in ("moving-frf", "moving-frf-fe", "moving-frf-fe-plain", "duhamel")},
+    "newmark": Method(newmark, "Newmark's method, the whole road", True),
+    "newmark-window": Method(_newmark_window, "Newmark's method, a stretch of road that travels along", True),
+}
+
+# What is compared if nobody says; and the variant that is shown beside a method.
+USUAL = ("moving-frf", "moving-frf-fe", "duhamel", "cdfm", "sim", "newmark")
+BESIDE = {"cdfm": "cdfm-window", "newmark": "newmark-window"}
+
+
+def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]:
+    """Look methods up by name; a variant stands beside its method.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The case.
+    names : sequence of str, optional
+        Names; None: the usual ones.
+
+    Returns
+    -------
+    dict of str to Method
+        By name.
+
+    Raises
+    ------
+    ValueError
+        If a method is unknown or does not suit the scenario, or the guideway cannot be divided into elements.
+    """
+    known, others = (WITH_VEHICLE, WITH_LOADS) if scenario.loads is None else (WITH_LOADS, WITH_VEHICLE)
+    guideway = scenario.guideway
+    if not isinstance(guideway, Track) or not isinstance(guideway.beam, EulerBernoulliBeam):
+        kind = type(guideway.beam if isinstance(guideway, Track) else guideway).__name__
+        raise ValueError(
+            "guideway must be a track with an Euler–Bernoulli beam, since all methods but the first divide it into "
+            f"finite elements, got a {kind}"
+        )
+    wanted = [name for name in USUAL if name in known] if names is None else list(names)
+    unknown = [name for name in wanted if name not in known]
+    if unknown or not wanted:
+        what = "prescribed loads" if scenario.vehicle is None else "a vehicle"
+        close = difflib.get_close_matches(unknown[0], known, n=1) if unknown and unknown[0] not in others else []
+        hint = f" (did you mean {close[0]!r}?)" if close else ""
+        raise ValueError(
+            f"methods for a scenario with {what} are {', '.join(known)}; got {', '.join(unknown) or 'none'}{hint}"
+        )
+    shown = [other for name in wanted for other in (name, BESIDE.get(name, name))]
+    return {name: known[name] for name in dict.fromkeys(shown)}
+
+
+def elements(scenario: Scenario) -> list[float]:
+    """Choose lengths of elements to try: round numbers near shares of the length over which the track bends.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The case.
+
+    Returns
+    -------
+    list of float
+        Lengths [m], descending.
+    """
+    assert isinstance(scenario.guideway, Track)
+    length = bending_length(scenario.guideway)
+    return [_rounded(share * length) for share in ELEMENTS]
+
+
+def _rounded(value: float) -> float:
+    """Round down to 1, 2 or 5 times a power of ten, or a quarter of that."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return max(step * power for step in (0.5, 1.0, 1.25, 2.0, 2.5, 5.0) if step * power <= value * (1 + 1e-9))

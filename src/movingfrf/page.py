@@ -1,0 +1,107 @@
+"""The page that every report is: its parts, and the one file they are put into."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.resources import files
+from typing import NamedTuple
+
+from movingfrf.illustrations import Illustration
+
+
+class Setting(NamedTuple):
+    """One line of the head: what was set, to which value, and what to know about it."""
+
+    name: str
+    value: str
+    note: str = ""
+    wide: bool = False
+
+
+class Column(NamedTuple):
+    """Head of a column."""
+
+    name: str
+    units: str
+
+
+class Row(NamedTuple):
+    """One row of a table, with the colour of its curves."""
+
+    name: str
+    cells: list[str]
+    colour: str = ""
+
+
+class Table(NamedTuple):
+    """A table for reading."""
+
+    caption: str
+    corner: str
+    columns: list[Column]
+    rows: list[Row]
+
+
+def page(
+    *,
+    title: str,
+    version: str,
+    summary: str,
+    settings: Sequence[Setting],
+    findings: Sequence[str],
+    no_findings: str,
+    tables: Sequence[Table],
+    figures: Sequence[Illustration],
+    method: Sequence[str],
+    scenario: str,
+    measures: str = "Measures",
+) -> str:
+    """Put a page together.
+
+    Parameters
+    ----------
+    title : str
+        Title of the page.
+    version : str
+        Version of the package that computed what is shown.
+    summary : str
+        What this is about, in a sentence or two.
+    settings : sequence of Setting
+        What was set.
+    findings : sequence of str
+        Sentences about the validity of the result.
+    no_findings : str
+        What is said if there are none.
+    tables : sequence of Table
+        Numbers.
+    figures : sequence of Illustration
+        Figures.
+    method : sequence of str
+        How it was computed, and what is assumed.
+    scenario : str
+        Text of the scenario.
+    measures : str
+        Heading of the tables.
+
+    Returns
+    -------
+    str
+        One HTML page without references to anything outside it. Equal input gives equal text.
+    """
+    from jinja2 import Environment, StrictUndefined
+
+    template = files("movingfrf").joinpath("templates", "report.html.j2").read_text(encoding="utf-8")
+    environment = Environment(autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True)
+    return environment.from_string(template).render(
+        title=title,
+        version=version,
+        summary=summary,
+        settings=settings,
+        findings=findings,
+        no_findings=no_findings,
+        tables=tables,
+        figures=figures,
+        method=method,
+        scenario=scenario,
+        measures=measures,
+    )
