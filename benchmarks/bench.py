@@ -21,6 +21,7 @@ os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 import numpy as np
 import scipy.fft
+from benchmarks import methods
 
 import movingfrf as mf
 
@@ -154,7 +155,7 @@ def imports() -> None:
 def main() -> None:
     """Run the benchmarks that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="leave out the hour of travel")
+    parser.add_argument("--quick", action="store_true", help="leave out the hour of travel and the other methods")
     arguments = parser.parse_args()
     warnings.simplefilter("ignore", mf.ValidityWarning)
     print("one thread, medians")
@@ -163,6 +164,7 @@ def main() -> None:
     imports()
     if not arguments.quick:
         hour(ratio)
+        methods.main()
 
 
 if __name__ == "__main__":

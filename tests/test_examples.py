@@ -46,3 +46,12 @@ def test_paved_road_without_its_profile(tmp_path):
     scenario.write_text((ROOT / "examples" / "paved_road.toml").read_text(encoding="utf-8"), encoding="utf-8")
     with pytest.raises(mf.ScenarioError, match=r"utia_profile\.txt: No such file"):
         loaded("paved_road").told(scenario)
+
+
+def test_bridge_example(capsys):
+    """Published: 2.4073 mm at 0.3710 s with 15 modes, 2.3839 mm with one (PARAMETERS.md)."""
+    bridge = loaded("bridge")
+    bridge.main()
+    assert "2.4073 mm at 0.3710 s" in capsys.readouterr().out
+    middle = bridge.crossing(modes=1).place_deflection.values
+    assert middle.max() == pytest.approx(2.3839e-3, rel=1e-4)

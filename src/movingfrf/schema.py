@@ -38,6 +38,9 @@ COUPLED: dict[str, Label] = {
     "motion": Label(("time", "dof"), "m or rad", "motion about the steady state, down, nose down"),
     "acceleration": Label(("time", "dof"), "m/s2 or rad/s2", "acceleration, down, nose down"),
     "roughness": Label(("time", "contact"), "m", "elevation of the road under the contact, up"),
+    # Points of a finite road that stand still, where they were asked for.
+    "place": Label(("place",), "m", "position of a point of the road", coordinate=True),
+    "place_deflection": Label(("time", "place"), "m", "deflection of the road at that point, down"),
 }
 
 # The response of a guideway to prescribed forces.

@@ -254,10 +254,11 @@ def march(
     mesh,
     number,
     travels,
-    # Where contacts and observers stand at step 0, and their speed.
+    # Where contacts and observers stand at step 0, the speed of the contacts, and whether observers share it.
     contacts,
     observers,
     speed,
+    observers_travel,
     # Vehicle: inverse of its effective mass, its matrices, map to the contacts; contact springs and dashpots.
     vehicle_inverse,
     vehicle_mass,
@@ -465,7 +466,14 @@ def march(
             deflection_out[step, j] = w
         for j in range(observers.size):
             shape_functions(
-                observers[j] + travelled, mesh[0], mesh[1], last, number, here, here_values, here_slopes
+                observers[j] + (travelled if observers_travel else 0.0),
+                mesh[0],
+                mesh[1],
+                last,
+                number,
+                here,
+                here_values,
+                here_slopes,
             )
             w = 0.0
             for q in range(4):

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 import movingfrf.findings as find
 from movingfrf._checks import Checks, FloatArray, SolveError, checking, require_memory
@@ -54,6 +55,7 @@ def cdfm(
     blend: float = 5.0,
     superposed: bool = False,
     run_in: float = 1.0,
+    observe: ArrayLike = (),
     scheme: str | Scheme = "average_acceleration",
     compiled: bool | None = None,
     progress: Progress = silent,
@@ -89,6 +91,9 @@ def cdfm(
     run_in : float
         Time for which the vehicle's weight travels along the smooth road before the record begins [s], from a road
         at rest under it; 0 begins with that state.
+    observe : array_like, shape (place,)
+        Points of the road, standing still, whose deflection is recorded too [m]: mid-span of a bridge. Not with
+        `superposed`, whose steady part is known under the contacts only.
     scheme : str or Scheme
         Time-stepping scheme, by name or as the row of its numbers.
     compiled : bool, optional
@@ -99,7 +104,7 @@ def cdfm(
     Returns
     -------
     xarray.Dataset
-        With the variables of a result of `simulate`.
+        With the variables of a result of `simulate`, and `place_deflection` (time, place) [m] if asked for.
 
     Raises
     ------
@@ -137,6 +142,7 @@ def cdfm(
         scheme=scheme,
         superposed=superposed,
         run_in=run_in,
+        observe=observe,
         compiled=compiled,
         progress=progress,
     )()
@@ -154,6 +160,7 @@ def sim(
     blend: float = 5.0,
     superposed: bool = False,
     run_in: float = 1.0,
+    observe: ArrayLike = (),
     scheme: str | Scheme = "average_acceleration",
     tolerance: float = 1e-10,
     iterations: int = 50,
@@ -187,6 +194,8 @@ def sim(
         As for `cdfm`.
     run_in : float
         As for `cdfm` [s].
+    observe : array_like, shape (place,)
+        As for `cdfm` [m].
     scheme : str or Scheme
         Time-stepping scheme, by name or as the row of its numbers.
     tolerance : float
@@ -230,6 +239,7 @@ def sim(
         iteration=Iteration(tolerance, iterations),
         superposed=superposed,
         run_in=run_in,
+        observe=observe,
         compiled=compiled,
         progress=progress,
     )()
@@ -243,6 +253,7 @@ def prepared(
     iteration: Iteration = SOLVED,
     superposed: bool = False,
     run_in: float = 1.0,
+    observe: ArrayLike = (),
     compiled: bool | None = None,
     progress: Progress = silent,
 ) -> Callable[[], xr.Dataset]:
@@ -254,7 +265,7 @@ def prepared(
         How the vehicle travels.
     parts : tuple of FiniteGuideway, Vehicle and Profile
         Who travels on what.
-    scheme, superposed, run_in, compiled, progress
+    scheme, superposed, run_in, observe, compiled, progress
         As for `cdfm`.
     iteration : Iteration
         How contact forces are found in each step.
@@ -268,7 +279,12 @@ def prepared(
     with checking() as check:
         check.not_negative("run_in", run_in, "s")
         row = scheme_named(check, scheme)
+        places = check.array("observe", observe, "m", (None,))
+        if places.size and (superposed or road.travels):
+            check.refuse("observe", "must be empty on a road that travels along and where the weight is superposed")
     with checking() as check:
+        if places.size:
+            require_on_road(check, road, places, (0.0, 0.0))
         positions = journey.start * (not road.travels) + vehicle.positions
         before, after = -journey.speed * run_in, journey.speed * journey.time_step * journey.samples
         require_on_road(check, road, positions, (0.0, 0.0) if road.travels else (before, after))
@@ -282,7 +298,8 @@ def prepared(
         time_step=journey.time_step,
         speed=journey.speed,
         contacts=positions,
-        observers=np.empty(0),
+        observers=places,
+        observers_travel=False,
         law=law_of(vehicle),
         iteration=iteration,
         compiled=compiled,
@@ -333,6 +350,8 @@ def prepared(
             "acceleration": record.acceleration,
             "roughness": excitation.roughness,
         }
+        if places.size:
+            values |= {"place": places, "place_deflection": record.observed}
         return labelled({**journey.coordinates(vehicle), **values}, COUPLED, attributes)
 
     return step
@@ -422,7 +441,7 @@ def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress
     yields = march.road.rows(march.places(-steps)) @ sags
     load = np.linalg.solve(np.eye(len(held)) + held @ yields, vehicle.static_loads)
     deflection = yields @ load
-    alone = replace(march, law=no_vehicle(march.contacts.size), iteration=SOLVED)
+    alone = replace(march, law=no_vehicle(march.contacts.size), iteration=SOLVED, observers=np.empty(0))
     nothing = np.zeros((steps + 1, march.contacts.size))
     for _ in range(MOST_ROUNDS):
         state = alone.at_rest(-steps)

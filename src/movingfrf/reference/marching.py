@@ -106,7 +106,7 @@ class March:
     time_step : float
         Step in time [s].
     speed : float
-        Speed of contacts and observers [m/s].
+        Speed of the contacts [m/s].
     contacts, observers : ndarray
         Where they stand at step 0 [m].
     law : Law
@@ -115,6 +115,8 @@ class March:
         How contact forces are found.
     compiled : bool, optional
         Whether to use the compiled loops; None: where they apply and numba is installed.
+    observers_travel : bool
+        Whether observers travel with the contacts or stand still.
     """
 
     road: FiniteGuideway
@@ -126,6 +128,7 @@ class March:
     law: Law
     iteration: Iteration = SOLVED
     compiled: bool | None = None
+    observers_travel: bool = True
 
     def at_rest(self, step: int = 0) -> State:
         """Everything at zero, at a step of the journey."""
@@ -133,7 +136,7 @@ class March:
             np.zeros((3, self.road.dofs)), np.zeros((3, len(self.law.mass))), np.zeros(self.contacts.size)
         )
         if self.road.travels:
-            state.shifted[0] = self._elements(step)
+            state.shifted[0] = self._elements(np.array(step))
         return state
 
     def places(self, step: int) -> FloatArray:
@@ -196,10 +199,9 @@ class March:
         widths = (contacts, contacts, self.observers.size, dofs, dofs)
         record: list[FloatArray] = [np.empty((steps + 1, width)) for width in widths]
         record[0][0] = state.acting - loads[0]
-        record[1][0], record[2][0] = (
-            self.road.rows(self._places(places, origin, state)) @ state.road[0]
-            for places in (self.contacts, self.observers)
-        )
+        watched = self._places(self.observers, origin, state) if self.observers_travel else self.observers
+        record[1][0] = self.road.rows(self._places(self.contacts, origin, state)) @ state.road[0]
+        record[2][0] = self.road.rows(watched) @ state.road[0]
         record[3][0], record[4][0] = state.body[0], state.body[2]
         stride = max(1, min(STRIDE, WORK // self.road.dofs))
         advance = self._compiled if self.uses_compiled else self._plain
@@ -317,6 +319,7 @@ class March:
             self.contacts,
             self.observers,
             float(self.speed),
+            self.observers_travel,
             self.vehicle_inverse,
             *law,
             np.ascontiguousarray(roughness),
@@ -349,86 +352,127 @@ class March:
         free_u, free_v, lift_u, lift_v = (0.5 - beta) * dt * dt, (1 - gamma) * dt, beta * dt * dt, gamma * dt
         lifted = -keep * self.vehicle_inverse @ law.contact_map.T
         own = law.contact_map @ lifted
+        contacts, identity = self.contacts.size, np.eye(self.contacts.size)
         dashed = bool(law.dashpots.any())
-        contacts = self.contacts.size
         worst = 0
         origin, begin, end = steps
+        moved_on = self._elements(origin + np.arange(begin + 1, end + 1))
+        steps_now, nobody = origin + np.arange(begin + 1, end + 1), self.contacts[:0]
+        rows = self._rows(self.contacts, steps_now, moved_on)
+        slopes = self._rows(self.contacts if dashed else nobody, steps_now, moved_on, derivative=1)
+        before = self._rows(self.contacts if alpha_f else nobody, steps_now - 1, moved_on)
+        watched = self._rows(self.observers, steps_now if self.observers_travel else 0 * steps_now, moved_on)
         for step in range(begin + 1, end + 1):
+            now = step - begin - 1
             if road.travels:
-                self._move_on(origin + step, state)
-            places = self._places(self.contacts, origin + step, state)
-            across = road.rows(places).toarray()
-            load = loads[min(step, len(loads) - 1)]
-            earlier = loads[min(step - 1, len(loads) - 1)]
-            at_u = u + keep * (dt * v + free_u * a)
-            at_v = v + keep * free_v * a
-            right = -(stiffness @ at_u) - damping @ at_v - (mass @ (alpha_m * a) if alpha_m else 0.0)
-            right += across.T @ (keep * load)
+                self._move_on(int(moved_on[now]), state)
+            at, values = rows.at(now)
+            load, earlier = loads[min(step, len(loads) - 1)], loads[min(step - 1, len(loads) - 1)]
+            right = np.zeros((road.dofs, 1 + contacts), order="F")
+            right[:, 0] = -(stiffness @ (u + keep * (dt * v + free_u * a))) - damping @ (v + keep * free_v * a)
+            if alpha_m:
+                right[:, 0] -= alpha_m * (mass @ a)
             if alpha_f:
-                right += road.rows(self._places(self.contacts, origin + step - 1, state)).T @ (
-                    alpha_f * state.acting
-                )
-            solved = self._solver.solve(np.column_stack([right, keep * across.T]))
+                np.add.at(right[:, 0], before.at(now)[0], before.at(now)[1] * (alpha_f * state.acting)[:, None])
+            for contact in range(contacts):
+                np.add.at(right[:, 1 + contact], at[contact], keep * values[contact])
+            right[:, 0] += right[:, 1:] @ load
+            solved = self._solver.solve(right)
             free_a, per_force = solved[:, 0], solved[:, 1:]
-            free_z, free_dz = z + dt * dz + free_u * ddz, dz + free_v * ddz
-            push = -law.stiffness @ (keep * free_z + alpha_f * z) - law.damping @ (keep * free_dz + alpha_f * dz)
-            push -= alpha_m * (law.mass @ ddz) + alpha_f * law.contact_map.T @ (state.acting - earlier)
-            free_ddz = self.vehicle_inverse @ push
-            moved = u + dt * v + free_u * a + lift_u * free_a
-            moving = v + free_v * a + lift_v * free_a
-            slopes = road.rows(places, 1).toarray() if dashed else np.zeros_like(across)
-            yields, yielding = across @ per_force, slopes @ per_force
-            gap = law.springs * (law.contact_map @ (free_z + lift_u * free_ddz) - across @ moved + roughness[step])
-            gap += law.dashpots * (
-                law.contact_map @ (free_dz + lift_v * free_ddz)
-                - across @ moving
-                - self.speed * (slopes @ moved)
-                + rate[step]
-            )
-            matrix = np.eye(contacts) + law.springs[:, None] * lift_u * (yields - own)
-            matrix += law.dashpots[:, None] * (lift_v * (yields - own) + self.speed * lift_u * yielding)
-            if not len(law.mass):
-                force: FloatArray = np.zeros(contacts)
-            elif self.iteration.tolerance:
-                force, count = _exchanged(matrix, gap, state.acting - earlier, self.iteration)
-                if count < 0:
-                    return step, worst
-                worst = max(worst, count)
-            else:
-                force = np.linalg.solve(matrix, gap)
+            force: FloatArray = np.zeros(contacts)
+            if len(law.mass):
+                free_z, free_dz = z + dt * dz + free_u * ddz, dz + free_v * ddz
+                push = -law.stiffness @ (keep * free_z + alpha_f * z) - law.damping @ (
+                    keep * free_dz + alpha_f * dz
+                )
+                push -= alpha_m * (law.mass @ ddz) + alpha_f * law.contact_map.T @ (state.acting - earlier)
+                free_ddz = self.vehicle_inverse @ push
+                moved = u + dt * v + free_u * a + lift_u * free_a
+                yields = np.einsum("jq,jql->jl", values, per_force[at])
+                down = (values * moved[at]).sum(axis=1)
+                gap = law.springs * (law.contact_map @ (free_z + lift_u * free_ddz) - down + roughness[step])
+                matrix = identity + law.springs[:, None] * lift_u * (yields - own)
+                if dashed:
+                    along, inclines = slopes.at(now)
+                    sinking = (values * (v[at] + free_v * a[at] + lift_v * free_a[at])).sum(axis=1)
+                    sinking += self.speed * (inclines * moved[along]).sum(axis=1)
+                    gap += law.dashpots * (law.contact_map @ (free_dz + lift_v * free_ddz) - sinking + rate[step])
+                    yielding = np.einsum("jq,jql->jl", inclines, per_force[along])
+                    matrix += law.dashpots[:, None] * (lift_v * (yields - own) + self.speed * lift_u * yielding)
+                if self.iteration.tolerance:
+                    force, count = _exchanged(matrix, gap, state.acting - earlier, self.iteration)
+                    if count < 0:
+                        return step, worst
+                    worst = max(worst, count)
+                else:
+                    force = np.linalg.solve(matrix, gap)
+                ddz[:] = free_ddz + lifted @ force
+                z[:] = free_z + lift_u * ddz
+                dz[:] = free_dz + lift_v * ddz
             new = free_a + per_force @ force
             u += dt * v + free_u * a + lift_u * new
             v += free_v * a + lift_v * new
             a[:] = new
-            ddz[:] = free_ddz + lifted @ force
-            z[:] = free_z + lift_u * ddz
-            dz[:] = free_dz + lift_v * ddz
             state.acting[:] = force + load
-            record[0][step], record[1][step] = force, across @ u
+            record[0][step], record[1][step] = force, (values * u[at]).sum(axis=1)
             if self.observers.size:
-                record[2][step] = road.rows(self._places(self.observers, origin + step, state)) @ u
+                seen, weights = watched.at(now)
+                record[2][step] = (weights * u[seen]).sum(axis=1)
             record[3][step], record[4][step] = z, ddz
         return -1, worst
+
+    def _rows(self, places: FloatArray, steps: IntArray, moved_on: IntArray, derivative: int = 0) -> _Rows:
+        """Rows of some places at some steps of the journey, on a road that has moved on by so many elements."""
+        travelled = self.speed * self.time_step * steps - moved_on * self.road.spacing
+        positions = (travelled[:, None] + places).ravel()
+        return _Rows.of(self.road.rows(positions, derivative), len(places))
 
     def _places(self, places: FloatArray, step: int, state: State) -> FloatArray:
         """Where contacts or observers stand at a step of the journey, seen from the road."""
         return places + (self.speed * self.time_step * step - state.shifted[0] * self.road.spacing)
 
-    def _elements(self, step: int) -> int:
-        """Whole elements that a travelling road has moved on by a step of the journey."""
-        return int(np.floor(self.speed * self.time_step * step / self.road.spacing + SAME_PLACE))
+    def _elements(self, steps: IntArray) -> IntArray:
+        """Whole elements that a travelling road has moved on by some steps of the journey."""
+        if not self.road.travels:
+            return np.zeros(np.shape(steps), np.int64)
+        elements = np.floor(self.speed * self.time_step * steps / self.road.spacing + SAME_PLACE)
+        return elements.astype(np.int64)
 
-    def _move_on(self, step: int, state: State) -> None:
-        """Let a travelling road follow by whole elements."""
+    def _move_on(self, elements: int, state: State) -> None:
+        """Let a travelling road follow until it has moved on by so many elements."""
         mesh = self.road.mesh
         assert mesh is not None
-        elements = self._elements(step) - int(state.shifted[0])
+        elements -= int(state.shifted[0])
         if elements > 0:
             state.shifted[0] += elements
             # Unknowns per element, all layers.
             gone = elements * int(mesh.number[4] - mesh.number[2])
             state.road[:, :-gone] = state.road[:, gone:].copy()
             state.road[:, -gone:] = 0.0
+
+
+class _Rows(NamedTuple):
+    """Sparse rows, one per place and step, filled up with zeros to equal length."""
+
+    columns: IntArray  # (step · place, entry)
+    values: FloatArray
+    places: int
+
+    @classmethod
+    def of(cls, rows: sparse.csr_array, places: int) -> _Rows:
+        """Fill rows up."""
+        counts = np.diff(rows.indptr)
+        entry = np.arange(rows.indices.size) - np.repeat(rows.indptr[:-1], counts)
+        row = np.repeat(np.arange(counts.size), counts)
+        shape = (counts.size, int(counts.max(initial=0)))
+        columns, values = np.zeros(shape, np.int64), np.zeros(shape)
+        columns[row, entry], values[row, entry] = rows.indices, rows.data
+        return cls(columns, values, places)
+
+    def at(self, step: int) -> tuple[IntArray, FloatArray]:
+        """Columns and values of one step, shape (place, entry)."""
+        some = slice(step * self.places, (step + 1) * self.places)
+        return self.columns[some], self.values[some]
 
 
 def _exchanged(
