@@ -62,8 +62,10 @@ class Case:
 
     @property
     def journey(self) -> Journey:
-        """The scenario's journey in this case's steps."""
-        return replace(self.scenario.journey, time_step=self.time_step)
+        """The scenario's journey in this case's steps, no longer than in its own: the profile ends there."""
+        journey = self.scenario.journey
+        samples = math.floor(journey.samples * journey.time_step / self.time_step * (1 + 1e-12))
+        return replace(journey, time_step=self.time_step, duration=samples * self.time_step)
 
     @property
     def track(self) -> Track:

@@ -46,15 +46,16 @@ def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
     SolveError
         If the vehicle's natural frequencies lie too far apart for floating-point numbers.
     """
-    poles = np.abs(vehicle.poles)
-    if not poles.min() > WIDEST * poles.max():
+    poles = vehicle.poles
+    slowest, fastest = np.abs(poles).min(), np.abs(poles).max()
+    if not slowest > WIDEST * fastest:
         raise SolveError(
-            f"the vehicle's natural frequencies, from {poles.min() / (2 * np.pi):.3g} to "
-            f"{poles.max() / (2 * np.pi):.3g} Hz, lie too far apart to be computed together at {speed:g} m/s"
+            f"the vehicle's natural frequencies, from {slowest / (2 * np.pi):.3g} to "
+            f"{fastest / (2 * np.pi):.3g} Hz, lie too far apart to be computed together at {speed:g} m/s"
         )
-    lowest, highest = 1e-2 * poles.min(), 1e2 * poles.max()
+    lowest, highest = 1e-2 * slowest, 1e2 * fastest
     base = np.geomspace(lowest, highest, int(np.log10(highest / lowest) * PER_DECADE) + 2)
-    path = np.unique(np.concatenate([[0.0], base, *map(_around, vehicle.poles)]))
+    path = np.unique(np.concatenate([[0.0], base, *map(_around, poles)]))
     if path.size % 2 == 0:
         path = np.append(path, 2 * highest)
     return path * (1 - 1j * BELOW_AXIS)
