@@ -259,8 +259,9 @@ def march(
     observers,
     speed,
     observers_travel,
-    # Vehicle: inverse of its effective mass, its matrices, map to the contacts; contact springs and dashpots.
+    # Vehicle: inverses of its effective and its own mass, its matrices, map to the contacts; springs, dashpots.
     vehicle_inverse,
+    mass_inverse,
     vehicle_mass,
     vehicle_damping,
     vehicle_stiffness,
@@ -339,7 +340,7 @@ def march(
             elements = int(np.floor(travelled / mesh[1] + 1e-9)) - shifted[0]
             if elements > 0:
                 shifted[0] += elements
-                gone = 2 * elements
+                gone = min(2 * elements, n)
                 for part in range(3):
                     for i in range(n - gone):
                         road[part, i] = road[part, i + gone]
@@ -370,7 +371,7 @@ def march(
         for j in range(k):
             for q in range(4):
                 right[places[j, q]] += keep * values[j, q] * loads[prescribed, j]
-                if alpha_f != 0.0:
+                if alpha_f != 0.0 and before[j, q] >= 0:
                     right[before[j, q]] += alpha_f * values_before[j, q] * acting[j]
         if m:
             for i in range(m):
@@ -455,6 +456,18 @@ def march(
             dz[i] = free_dz[i] + lift_v * ddz[i]
             motion_out[step, i] = z[i]
             acceleration_out[step, i] = ddz[i]
+        if alpha_m != 0.0 or alpha_f != 0.0:
+            # What such a scheme carries as acceleration belongs to a later instant; that of this one balances.
+            for i in range(m):
+                push[i] = 0.0
+                for p in range(m):
+                    push[i] -= vehicle_stiffness[i, p] * z[p] + vehicle_damping[i, p] * dz[p]
+                for s in range(k):
+                    push[i] -= contact_map[s, i] * gap[s]
+            for i in range(m):
+                acceleration_out[step, i] = 0.0
+                for p in range(m):
+                    acceleration_out[step, i] += mass_inverse[i, p] * push[p]
         for j in range(k):
             acting[j] = gap[j] + loads[prescribed, j]
             w = 0.0

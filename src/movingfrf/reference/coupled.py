@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.linalg import eigvalsh
 
 import movingfrf.findings as find
 from movingfrf._checks import Checks, FloatArray, SolveError, checking, require_memory
@@ -30,6 +31,9 @@ MOST_ROUNDS = 5
 
 # Contact forces that differ by no more than this share agree.
 AGREED = 1e-9
+
+# Unknowns of which all natural frequencies are computed to find the highest.
+FEW = 50
 
 # A vehicle whose contacts move as a rigid body allows is not held by the road: relative stiffness that is rounding.
 ROUNDING = 1e-9
@@ -287,9 +291,10 @@ def prepared(
             require_on_road(check, road, places, (0.0, 0.0))
         positions = journey.start * (not road.travels) + vehicle.positions
         before, after = -journey.speed * run_in, journey.speed * journey.time_step * journey.samples
-        require_on_road(check, road, positions, (0.0, 0.0) if road.travels else (before, after))
+        # A road that travels along follows element by element.
+        require_on_road(check, road, positions, (0.0, road.spacing) if road.travels else (before, after))
         require_apart(check, road, positions)
-        require_stable_scheme(check, road, row, journey.time_step)
+        require_stable_scheme(check, road, row, journey.time_step, vehicle)
     channels = 5 * len(vehicle.contacts) + 2 * len(vehicle.dof_names)
     require_memory(8.0 * channels * journey.samples, f"{journey.samples} steps of {journey.time_step:g} s")
     march = March(
@@ -526,7 +531,9 @@ def require_apart(check: Checks, road: FiniteGuideway, positions: FloatArray) ->
         )
 
 
-def require_stable_scheme(check: Checks, road: FiniteGuideway, scheme: Scheme, time_step: float) -> None:
+def require_stable_scheme(
+    check: Checks, road: FiniteGuideway, scheme: Scheme, time_step: float, vehicle: Vehicle | None = None
+) -> None:
     """Refuse a scheme that is unstable with this road and step, and say which condition fails.
 
     Parameters
@@ -539,21 +546,38 @@ def require_stable_scheme(check: Checks, road: FiniteGuideway, scheme: Scheme, t
         The scheme.
     time_step : float
         Step in time [s].
+    vehicle : Vehicle, optional
+        A vehicle that is stepped along.
     """
     limit = scheme.largest_phase
     if np.isinf(limit):
         return
     if limit == 0.0:
-        condition = "α_m ≤ α_f ≤ ½ and β ≥ ¼ + ½ (α_f − α_m)" if scheme.alpha_m or scheme.alpha_f else "γ ≥ ½"
+        condition = (
+            "α_m ≤ α_f ≤ ½, γ ≥ ½ − α_m + α_f and β ≥ ¼ + ½ (α_f − α_m)"
+            if scheme.alpha_m or scheme.alpha_f
+            else "γ ≥ ½"
+        )
         check.refuse("scheme", f"is unstable at every step, since {condition} does not hold: {tuple(scheme)}")
         return
-    from scipy.sparse.linalg import eigsh
-
-    highest = float(np.sqrt(eigsh(road.stiffness, 1, M=road.mass, which="LM", return_eigenvectors=False)[0]))
+    highest, what = _highest(road), "the road's mesh"
+    if vehicle is not None:
+        on_its_springs = float(eigvalsh(vehicle.held_stiffness, vehicle.matrices[0])[-1] ** 0.5)
+        if on_its_springs > highest:
+            highest, what = on_its_springs, "the vehicle"
     if time_step * highest > limit:
         check.refuse(
             "time_step",
             f"must be at most {limit / highest:.3g} s: with β = {scheme.beta:.4g} < γ/2 = {0.5 * scheme.gamma:.4g} "
-            f"the scheme is stable only while ω Δt ≤ {limit:.4g}, and the road's mesh vibrates at up to "
+            f"the scheme is stable only while ω Δt ≤ {limit:.4g}, and {what} vibrates at up to "
             f"{highest / (2 * np.pi):.4g} Hz, got {time_step!r} s",
         )
+
+
+def _highest(road: FiniteGuideway) -> float:
+    """Highest natural frequency of a road [rad/s]."""
+    from scipy.sparse.linalg import eigsh
+
+    if road.dofs <= FEW:
+        return float(eigvalsh(road.stiffness.toarray(), road.mass.toarray())[-1] ** 0.5)
+    return float(eigsh(road.stiffness, 1, M=road.mass, which="LM", return_eigenvectors=False)[0] ** 0.5)

@@ -97,10 +97,10 @@ def duhamel(
     require_memory(8.0 * channels * journey.samples, f"{journey.samples} steps of {time_step:g} s")
     excitation = seen_in_time(profile, vehicle, journey)
     assert excitation.rate is not None
-    static = road.samples.sum(axis=0) * road.time_step
+    yields = road.moving_frf(positions[:, None] - positions, speed, [0.0])[0].real
     held = vehicle.dynamic_stiffness(np.zeros(1, complex), None)[0].real
-    load = np.linalg.solve(np.eye(positions.size) + held @ static[columns], vehicle.static_loads)
-    steady = static[columns] @ load
+    load = np.linalg.solve(np.eye(positions.size) + held @ yields, vehicle.static_loads)
+    steady = yields @ load
     law = law_of(vehicle)
     samples = journey.samples
     record = [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,6 +26,9 @@ ENDS = {
     "free": (False, False),
     "absorbing": (True, True),
 }
+
+# Those that a road may have which travels along: elsewhere the road that joins it would have to jump.
+FOLLOWING = {"absorbing", "clamped"}
 
 # Damping at the end of an absorbing stretch, as a multiple of 2√(km): strong, but reached so gradually that next to
 # nothing is reflected. Measured on the reference road, 15 to 20 m long: below 1e-3 of what comes in.
@@ -239,7 +243,8 @@ def finite_track(
         Length of an element [m].
     ends : str or tuple of str
         "pinned" (simply supported), "clamped", "guided", "free", or "absorbing"; one for both, or one for each.
-        Absorbing ends have dashpots that grow from nothing over the length `absorbing`.
+        Absorbing ends have dashpots that grow from nothing over the length `absorbing`. A stretch that travels has
+        absorbing or clamped ends.
     absorbing : float
         Length of that stretch at each absorbing end [m].
     band : float
@@ -277,6 +282,12 @@ def finite_track(
         both = (ends, ends) if isinstance(ends, str) else tuple(ends)
         if len(both) != 2 or not all(isinstance(end, str) and end in ENDS for end in both):
             check.refuse("ends", f"must be one or two of {', '.join(ENDS)}, got {shown(ends)}")
+        if travels and not set(both) <= FOLLOWING:
+            check.refuse(
+                "ends",
+                f"of a road that travels along must be among {', '.join(sorted(FOLLOWING))}, so that what joins "
+                f"and leaves it is at rest, got {shown(ends)}",
+            )
         if not check.faults and last - first < 4 * element:
             check.refuse("last", f"must lie four elements of {element:g} m or more behind first, got {last!r} m")
     assert isinstance(track.beam, EulerBernoulliBeam)
@@ -367,7 +378,7 @@ class _Layers(NamedTuple):
 
 def _layers(track: Track) -> _Layers:
     """List the layers of a track from the top."""
-    masses, springs = [track.beam.mass], []
+    masses, springs = [float(track.beam.mass)], []
     waiting: list[Foundation | float] = [track.foundation]
     while waiting:
         part = waiting.pop()
@@ -376,8 +387,8 @@ def _layers(track: Track) -> _Layers:
             waiting += [part.below, part.mass, part.above]
         elif isinstance(part, (Spring, ShearLayer)):
             springs.append(part)
-        elif isinstance(part, float):
-            masses.append(part)
+        elif isinstance(part, Real):
+            masses.append(float(part))
     count = len(masses)
     tables = np.zeros((3, count, count))
     for n, spring in enumerate(springs):

@@ -96,7 +96,8 @@ def newmark_loads(
                 "start", f"must be 0 m, and the speed positive, on a road that travels along, got {start!r} m"
             )
     with checking() as check:
-        travelled = 0.0 if road.travels else speed * time_step * len(forces)
+        # A road that travels along follows element by element.
+        travelled = road.spacing if road.travels else speed * time_step * len(forces)
         require_on_road(
             check, road, start + np.concatenate([at, points]), (min(0.0, travelled), max(0.0, travelled))
         )

@@ -6,6 +6,9 @@ from typing import NamedTuple
 
 from movingfrf._checks import Checks, shown
 
+# Slack in the comparison of sums of parameters.
+ROUNDING = 1e-12
+
 
 class Scheme(NamedTuple):
     """Newmark's method, generalised: M a(n+1−α_m) + C v(n+1−α_f) + K u(n+1−α_f) = f(n+1−α_f).
@@ -38,7 +41,12 @@ class Scheme(NamedTuple):
             return 0.0
         if self.alpha_m or self.alpha_f:
             steady = self.alpha_m <= self.alpha_f <= 0.5
-            return float("inf") if steady and self.beta >= 0.25 + 0.5 * (self.alpha_f - self.alpha_m) else 0.0
+            steady = steady and self.gamma >= 0.5 - self.alpha_m + self.alpha_f - ROUNDING
+            return (
+                float("inf")
+                if steady and self.beta >= 0.25 + 0.5 * (self.alpha_f - self.alpha_m) - ROUNDING
+                else 0.0
+            )
         spare = 0.5 * self.gamma - self.beta
         return float("inf") if spare <= 0 else float(spare**-0.5)
 
