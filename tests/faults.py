@@ -30,6 +30,17 @@ SELECTION = [
     "tests/laws/test_properties.py",
 ]
 
+# These first where the fault lies in the independent way, and last otherwise.
+REFERENCE = [
+    "tests/reference/test_elements.py",
+    "tests/reference/test_sampled.py",
+    "tests/reference/test_coupled.py",
+    "tests/reference/test_duhamel.py",
+    "tests/reference/test_refusals.py",
+    "tests/reference/test_impulse.py",
+    "tests/reference/test_schemes.py",
+]
+
 # Two processes share the machine, each on one core.
 AT_A_TIME, LIMIT = 2, 600
 
@@ -151,7 +162,165 @@ FAULTS = [
         "(distance[:blending] - distance[0])",
     ),
     Fault("wheels exchanged along the road", "roughness/excitation.py", "(start + position)", "(start - position)"),
+    Fault("rate of the blending missing", "roughness/excitation.py", "smooth_step_slope(setting_in)", "0.0"),
+    # Finite roads.
+    Fault("shape function", "reference/finite_guideway.py", "[0, 1, -2, 1]", "[0, 1, -1, 0]"),
+    Fault("slope of an element not scaled", "reference/finite_guideway.py", "/ element**derivative", "/ 1.0"),
+    Fault(
+        "Pasternak layer missing",
+        "reference/finite_guideway.py",
+        "sparse.kron(integrals[1], layers.shear)",
+        "0.0 * sparse.kron(integrals[1], layers.shear)",
+    ),
+    Fault(
+        "bending damping as a dashpot",
+        "reference/finite_guideway.py",
+        "track.beam.bending_damping * integrals[2]",
+        "track.beam.bending_damping * integrals[0]",
+    ),
+    Fault("sleepers on the ground", "reference/finite_guideway.py", "stretch[n + 1 : n + 2] = -1.0", "pass"),
+    Fault(
+        "absorption begins where it should end",
+        "reference/finite_guideway.py",
+        "smooth_step(1.0 - distance / length)",
+        "smooth_step(distance / length)",
+    ),
+    Fault("guided end held", "reference/finite_guideway.py", '"guided": (False, True)', '"guided": (True, True)'),
+    # Schemes and the plain loop.
+    Fault("generalised α without its β", "reference/schemes.py", "0.25 * (1 - alpha_m + alpha_f) ** 2", "0.25"),
+    Fault(
+        "alphas exchanged",
+        "reference/schemes.py",
+        "(2 * radius - 1) / (radius + 1), radius / (radius + 1)",
+        "radius / (radius + 1), (2 * radius - 1) / (radius + 1)",
+    ),
+    Fault(
+        "damping missing in the effective matrix",
+        "reference/marching.py",
+        "gamma * dt * self.road.damping",
+        "0.0 * dt * self.road.damping",
+    ),
+    Fault(
+        "β twice in the effective matrix",
+        "reference/marching.py",
+        "beta * dt * dt * self.road.stiffness",
+        "2 * beta * dt * dt * self.road.stiffness",
+    ),
+    Fault(
+        "vehicle without (1 − α_f)",
+        "reference/marching.py",
+        "np.linalg.inv((1 - alpha_m) * law.mass + (1 - alpha_f) * moving)",
+        "np.linalg.inv((1 - alpha_m) * law.mass + moving)",
+    ),
+    Fault(
+        "plain: convective term with the wrong sign", "reference/marching.py", "sinking += self", "sinking -= self"
+    ),
+    Fault("plain: rate of the road missing", "reference/marching.py", "- sinking + rate[step])", "- sinking)"),
+    Fault("plain: old forces forgotten", "reference/marching.py", "(alpha_f * state.acting)", "(0 * state.acting)"),
+    Fault(
+        "plain: moved on by one unknown too many",
+        "reference/marching.py",
+        "gone = elements * int(mesh.number[4] - mesh.number[2])",
+        "gone = elements * int(mesh.number[4] - mesh.number[2]) + 1",
+    ),
+    Fault(
+        "half an element late",
+        "reference/marching.py",
+        "/ self.road.spacing + SAME_PLACE",
+        "/ self.road.spacing + 0.5",
+    ),
+    # The compiled loops.
+    Fault(
+        "convective term with the wrong sign",
+        "reference/compiled.py",
+        "dw += speed * slopes",
+        "dw -= speed * slopes",
+    ),
+    Fault("convective term missing", "reference/compiled.py", "dw += speed * slopes", "dw += 0.0 * slopes"),
+    Fault(
+        "convective term missing in what a force does",
+        "reference/compiled.py",
+        "+ speed * lift_u * yielding",
+        "+ 0.0 * yielding",
+    ),
+    Fault("rate of the road missing", "reference/compiled.py", "(dup - dw + rate[step, j])", "(dup - dw)"),
+    Fault("old forces forgotten", "reference/compiled.py", "alpha_f * values_before[j, q] * acting[j]", "0.0"),
+    Fault("old places not moved on", "reference/compiled.py", "before[j, q] -= gone", "before[j, q] -= 0"),
+    Fault(
+        "forces at their full",
+        "reference/compiled.py",
+        "+= keep * values[j, q] * gap[j]",
+        "+= values[j, q] * gap[j]",
+    ),
+    Fault(
+        "moved on by one unknown too many",
+        "reference/compiled.py",
+        "gone = min(2 * elements, n)",
+        "gone = min(2 * elements + 1, n)",
+    ),
+    Fault(
+        "lower half of the core",
+        "reference/compiled.py",
+        "core[q - 1 - b, q - 1 - a] += work",
+        "core[q - 1 - b, q - 1 - a] -= work",
+    ),
+    Fault(
+        "slope of a shape function",
+        "reference/compiled.py",
+        "slopes[1] = 1.0 + s * (3.0 * s - 4.0)",
+        "slopes[1] = 1.0 + s * (3.0 * s - 2.0)",
+    ),
+    Fault("band product one short", "reference/compiled.py", "+ l3[i] * w3[i]", "+ 0.0 * w3[i]"),
+    Fault(
+        "suspension does not damp",
+        "reference/compiled.py",
+        "vehicle_damping[i, p] * (keep * free_dz[p] + alpha_f * dz[p])",
+        "0.0",
+    ),
+    Fault(
+        "exchange that fails goes unnoticed",
+        "reference/compiled.py",
+        "                if count < 0:\n                    return step, worst\n",
+        "",
+    ),
+    # Steady travel, footprint, prescribed forces.
+    Fault(
+        "run-in with the loads of a rigid road",
+        "reference/coupled.py",
+        "static_loads - held @ deflection",
+        "static_loads",
+    ),
+    Fault("sag counted as motion", "reference/coupled.py", "motion -= steady.motion", "pass"),
+    Fault(
+        "footprint twice as long in time", "reference/coupled.py", "half = 0.5 * passing", "half = 1.0 * passing"
+    ),
+    Fault(
+        "acceleration at the start missing", "reference/moving_load.py", ".T @ forces[0])", ".T @ (0 * forces[0]))"
+    ),
+    # Struck roads and Duhamel's integral.
+    Fault("impulse as an acceleration", "reference/impulse.py", "state.road[1] = march", "state.road[2] = march"),
+    Fault("one road for all", "reference/impulse.py", "np.mean(records, axis=0)", "records[0]"),
+    Fault("reflections unseen", "reference/impulse.py", "share ** (2 * len(roads))", "0 * share"),
+    Fault("first sample counts fully", "guideways/sampled.py", "samples[0] *= 0.5", "samples[0] *= 1.0"),
+    Fault("transform of the other sign", "guideways/sampled.py", "phase = -1j", "phase = 1j"),
+    Fault("nothing is beyond Nyquist", "guideways/sampled.py", "<= np.pi / self.time_step", "<= np.inf"),
+    Fault(
+        "wrong half of the first hat",
+        "reference/duhamel.py",
+        "whole, _, first = weights",
+        "whole, first, _ = weights",
+    ),
+    Fault("hat leaning the other way", "reference/duhamel.py", "(trapezoid * (1 - share))", "(trapezoid * share)"),
+    Fault("plain: backward differences", "reference/duhamel.py", "(1.5, -2.0, 0.5)", "(1.5, -2.0, -0.5)"),
+    Fault("backward differences", "reference/compiled.py", "a, b, c = 1.5, -2.0, 0.5", "a, b, c = 1.5, -2.0, -0.5"),
+    Fault("oldest force first", "reference/duhamel.py", "kernel[:, :, :0:-1]", "kernel[:, :, 1:]"),
 ]
+
+
+def selection(fault: Fault | None) -> list[str]:
+    """List what runs against a fault: first the tests that lie next to it."""
+    independent = fault is not None and fault.file.startswith(("reference/", "guideways/sampled"))
+    return REFERENCE + SELECTION if independent else SELECTION + REFERENCE
 
 
 def stale() -> list[str]:
@@ -186,7 +355,7 @@ def outcome(fault: Fault | None) -> tuple[int, str]:
             "OMP_NUM_THREADS": "1",
             "OPENBLAS_NUM_THREADS": "1",
         }
-        command = [sys.executable, "-c", RUN, "-x", "-q", "-p", "no:cacheprovider", "--tb=line", *SELECTION]
+        command = [sys.executable, "-c", RUN, "-x", "-q", "-p", "no:cacheprovider", "--tb=line", *selection(fault)]
         try:
             done = subprocess.run(
                 command, cwd=copy, env=environment, capture_output=True, text=True, timeout=LIMIT, check=False

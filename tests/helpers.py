@@ -205,3 +205,18 @@ def rates(history: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
     """First and second derivative in time; `MARGIN` samples at either end are missing."""
     windows = np.lib.stride_tricks.sliding_window_view(history, 2 * MARGIN + 1, axis=0)
     return windows @ _FIRST / step, windows @ _SECOND / step**2
+
+
+def observed_order(steps, errors) -> float:
+    """Slope of the regression of log error on log step."""
+    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
+
+
+def apart(found, wanted, span=slice(None)) -> dict[str, float]:
+    """Relative L2 difference of each output of two coupled results; of the deflection, what moves."""
+    first, second = (
+        {name: result[name].values[span] for name in ("contact_force", "motion", "acceleration")}
+        | {"deflection": (result.deflection - result.static_deflection).values[span]}
+        for result in (found, wanted)
+    )
+    return {name: difference(first[name], second[name]) for name in first}

@@ -13,10 +13,10 @@ from movingfrf._checks import ComplexArray, FloatArray, IntArray, checking
 SAME_SHARE, SAME_PLACE = 1e-9, 1e-6
 
 # Samples that share one exponential factor in the transform.
-BLOCK = 64
+BLOCK = 256
 
 # Frequencies transformed at a time: their factors stay within the processor's cache.
-CHUNK = 1024
+CHUNK = 256
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -180,10 +180,12 @@ class SampledGuideway:
         blocks = -(-len(samples) // BLOCK)
         padded = np.zeros((blocks * BLOCK, columns.size))
         padded[: len(samples)] = samples
+        by_block = padded.reshape(blocks, BLOCK, -1).swapaxes(0, 1).reshape(BLOCK, -1)
         phase = -1j * self.time_step * omega[:, None]
         within, between = np.exp(phase * np.arange(BLOCK)), np.exp(phase * (BLOCK * np.arange(blocks)))
-        frf: ComplexArray = np.empty((omega.size, columns.size), complex)
-        for column, record in enumerate(padded.T):
-            frf[:, column] = np.einsum("wb,wb->w", between, within @ record.reshape(blocks, BLOCK).T)
+        # Two real products take half the time of one with a real factor made complex.
+        inner: ComplexArray = np.empty((omega.size, by_block.shape[1]), complex)
+        inner.real, inner.imag = within.real @ by_block, within.imag @ by_block
+        frf: ComplexArray = np.einsum("wb,wbc->wc", between, inner.reshape(omega.size, blocks, -1))
         frf *= self.time_step
         return frf

@@ -1,0 +1,111 @@
+"""A guideway known by samples: its transform against known ones, and what it refuses to know."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import movingfrf as mf
+from tests.helpers import VEHICLES
+
+STEP = 1e-3
+TIME = STEP * np.arange(4001)  # not a whole number of blocks
+SIZES, RATES = np.array([1e-6, 4e-7, -2e-7]), np.array([10.0, 25.0, 60.0])
+ROAD = mf.SampledGuideway(
+    response=SIZES * np.exp(-RATES * TIME[:, None]), time_step=STEP, offsets=[0.0, 3.0, -3.0], speed=10.0
+)
+OMEGA = 2 * np.pi * np.concatenate([np.linspace(0.0, 100.0, 1500), [250.0, 499.0]])
+
+
+@pytest.mark.parametrize("below", [0.0, 1.5], ids=["real", "below the axis"])
+def test_transform_of_exponentials(below):
+    """A e^{−at} has the transform A/(a + iω), for complex ω as well; the trapezoidal rule is off by (a+iω)²Δt²/12.
+
+    Exactly: A Δt (1/(1 − q) − ½) with q = e^{−(a+iω)Δt}, since nothing is left at the end.
+    """
+    omega = OMEGA - 1j * below
+    found = ROAD.moving_frf([0.0, 3.0, -3.0], 10.0, omega)
+    rate = RATES + 1j * omega[:, None]
+    rule = SIZES * STEP * (1 / (1 - np.exp(-rate * STEP)) - 0.5)
+    # After four seconds e^{(1.5 − 10) 4} is left at most, 2e-15.
+    assert np.abs(found - rule).max() < 1e-12 * np.abs(rule).max()
+    slow = OMEGA < 2 * np.pi * 40
+    exact = SIZES / rate[slow]
+    assert np.abs(found[slow] / exact - 1).max() < 1.05 * np.abs(rate[slow] * STEP).max() ** 2 / 12
+
+
+def test_offsets_in_any_order_and_shape():
+    whole = ROAD.moving_frf([0.0, 3.0, -3.0], 10.0, OMEGA)
+    ahead = np.array([[0.0, -3.0, 3.0], [3.0, 3.0, 0.0]])
+    found = ROAD.moving_frf(ahead, 10.0, OMEGA)
+    assert found.shape == (OMEGA.size, 2, 3)
+    assert (found == whole[:, [[0, 2, 1], [1, 1, 0]]]).all()
+    assert ROAD.moving_frf(3.0, 10.0, OMEGA).shape == (OMEGA.size,)
+    assert ROAD.moving_frf([3.0, 0.0], 10.0, 5.0, across=[[0.0], [1.0]]).shape == (1, 2, 2)
+    # A distance that was computed another way is the same distance.
+    assert (ROAD.moving_frf(3.0 + 1e-9, 10.0, OMEGA) == whole[:, 1]).all()
+
+
+def test_beyond_half_the_sampling_frequency_the_road_is_rigid():
+    found = ROAD.moving_frf([0.0], 10.0, 2 * np.pi * np.array([499.0, 501.0, 5000.0, -501.0]))
+    assert found[0] != 0
+    assert (found[1:] == 0).all()
+
+
+def test_negative_frequencies_are_conjugate():
+    found = ROAD.moving_frf([0.0], 10.0, [-30.0, 30.0])
+    assert found[0] == pytest.approx(found[1].conj(), rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "more", "message"),
+    [
+        (([0.0], 11.0, [1.0]), {}, "speed must be 10.0 m/s, at which the impulse response was recorded, got 11.0"),
+        (([0.0], np.nan, [1.0]), {}, "speed must be 10.0 m/s"),
+        (([0.0, 1.0], 10.0, [1.0]), {}, r"ahead must be one of the recorded offsets \[0.0, 3.0, -3.0\] m, got 1.0"),
+        (([3.001], 10.0, [1.0]), {}, "ahead must be one of the recorded"),
+        (([0.0], 10.0, [1.0]), {"derivative": 1}, "derivative must be 0: the record holds deflections only, got 1"),
+    ],
+)
+def test_what_was_not_recorded_is_refused(arguments, more, message):
+    with pytest.raises(ValueError, match=message):
+        ROAD.moving_frf(*arguments, **more)
+
+
+def test_a_missing_offset_is_refused_by_whoever_needs_it():
+    profile = mf.Profile(np.linspace(-10.0, 40.0, 6), np.zeros(6))
+    for call in (mf.simulate, mf.duhamel):
+        with pytest.raises(ValueError, match="ahead must be one of the recorded offsets"):
+            call(ROAD, VEHICLES["half_truck"], profile, speed=10.0, duration=1.0)
+        with pytest.raises(ValueError, match=r"speed must be 10\.0 m/s"):
+            call(ROAD, VEHICLES["quarter_car"], profile, speed=12.0, duration=1.0)
+
+
+GOOD = {"response": np.ones((5, 2)), "time_step": 1e-3, "offsets": [0.0, 1.0], "speed": 10.0}
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ({"response": np.ones(5)}, r"response must have shape \(any, 2\), got \(5,\)"),
+        ({"response": np.ones((5, 3))}, r"response must have shape \(any, 2\), got \(5, 3\)"),
+        ({"response": np.full((5, 2), np.inf)}, "response must be finite"),
+        ({"response": np.ones((1, 2))}, "response must hold at least two samples and one offset"),
+        ({"response": np.ones((5, 0)), "offsets": []}, "response must hold at least two samples and one offset"),
+        ({"time_step": -1e-3}, "time_step must be positive"),
+        ({"speed": np.inf}, "speed must be a finite number"),
+        ({"critical_speed": 0.0}, "critical_speed must be positive, got 0.0 m/s"),
+    ],
+)
+def test_impossible_records(more, message):
+    with pytest.raises(ValueError, match=message):
+        mf.SampledGuideway(**(GOOD | more))
+
+
+def test_a_record_is_kept_as_it_was_given():
+    given = np.ones((5, 2))
+    road = mf.SampledGuideway(**(GOOD | {"response": given}))
+    given[:] = 2.0
+    assert (road.samples == 1.0).all()
+    with pytest.raises(ValueError, match="read-only"):
+        road.samples[0] = 0.0
