@@ -283,6 +283,18 @@ FAULTS = [
         "                if count < 0:\n                    return step, worst\n",
         "",
     ),
+    Fault(
+        "acceleration of a later instant",
+        "reference/compiled.py",
+        "if alpha_m != 0.0 or alpha_f != 0.0:",
+        "if False:",
+    ),
+    Fault(
+        "plain: acceleration of a later instant",
+        "reference/marching.py",
+        "record[4][step] = self._mass_inverse @ push",
+        "pass",
+    ),
     # Steady travel, footprint, prescribed forces.
     Fault(
         "run-in with the loads of a rigid road",
@@ -297,6 +309,7 @@ FAULTS = [
     Fault(
         "acceleration at the start missing", "reference/moving_load.py", ".T @ forces[0])", ".T @ (0 * forces[0]))"
     ),
+    Fault("vehicle too stiff for the scheme", "reference/coupled.py", "if on_its_springs > highest:", "if False:"),
     # Struck roads and Duhamel's integral.
     Fault("impulse as an acceleration", "reference/impulse.py", "state.road[1] = march", "state.road[2] = march"),
     Fault("one road for all", "reference/impulse.py", "np.mean(records, axis=0)", "records[0]"),

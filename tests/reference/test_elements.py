@@ -30,9 +30,12 @@ def natural(road):
 
 
 @pytest.mark.parametrize("pasternak", [0.0, 2.0e6], ids=["winkler", "pasternak"])
-@pytest.mark.parametrize("n", [1, 2, 4])
+@pytest.mark.parametrize("n", [2, 3, 5])
 def test_frequencies_of_a_pinned_road(n, pasternak):
-    """ω = √((EI κ⁴ + G_p κ² + k)/m), κ = nπ/L; cubic elements: order 4."""
+    """ω = √((EI κ⁴ + G_p κ² + k)/m), κ = nπ/L; cubic elements: order 4.
+
+    The first wave is so accurate (1e-11) that the eigenvalue solver's rounding would show.
+    """
     road = mf.track(PAVEMENT, SHEARED_SOIL if pasternak else SOIL)
     kappa = n * np.pi / LENGTH
     exact = np.sqrt((BENDING * kappa**4 + pasternak * kappa**2 + STIFFNESS) / MASS)

@@ -22,8 +22,9 @@ from movingfrf.reference.finite_guideway import SAME_PLACE, FiniteGuideway
 from movingfrf.reference.schemes import Scheme
 from movingfrf.vehicles.base import Vehicle
 
-# Steps between two looks at the keyboard, and how many unknowns times steps that may be.
-STRIDE, WORK = 20_000, 20_000_000
+# Steps between two looks at the keyboard, how many unknowns times steps that may be, and, in NumPy, how many entries of
+# interpolating rows, which are held for all these steps at once.
+STRIDE, WORK, ENTRIES = 20_000, 20_000_000, 1_000_000
 
 # Entries of the inverse below this share of its diagonal are zero to rounding.
 NEGLIGIBLE = 1e-18
@@ -203,8 +204,11 @@ class March:
         record[1][0] = self.road.rows(self._places(self.contacts, origin, state)) @ state.road[0]
         record[2][0] = self.road.rows(watched) @ state.road[0]
         record[3][0], record[4][0] = state.body[0], state.body[2]
-        stride = max(1, min(STRIDE, WORK // self.road.dofs))
-        advance = self._compiled if self.uses_compiled else self._plain
+        stride, advance = min(STRIDE, WORK // self.road.dofs), self._compiled
+        if not self.uses_compiled:
+            entries = self.road.rows(self._places(self.contacts, origin, state)).nnz + self.observers.size
+            stride, advance = min(stride, ENTRIES // max(entries, 1)), self._plain
+        stride = max(stride, 1)
         iterations, begin = 0, 0
         while begin < steps:
             end = min(begin + stride, steps)
