@@ -309,8 +309,20 @@ FAULTS = [
     Fault(
         "acceleration at the start missing", "reference/moving_load.py", ".T @ forces[0])", ".T @ (0 * forces[0]))"
     ),
-    Fault("vehicle too stiff for the scheme", "reference/coupled.py", "if on_its_springs > highest:", "if False:"),
-    # Struck roads and Duhamel's integral.
+    Fault("vehicle too stiff for the scheme", "reference/coupled.py", "highest**2 + own", "highest**2 + 0.0 * own"),
+    Fault("jump at the start of the record", "reference/coupled.py", "march.begun(", "(lambda *_: None)("),
+    Fault(
+        "Duhamel: jump at the start",
+        "reference/duhamel.py",
+        "earlier[:, columns], first)",
+        "earlier[:, columns], 0 * first)",
+    ),
+    Fault(
+        "redistributed weight iterated without the road",
+        "reference/coupled.py",
+        "np.linalg.solve(np.eye(len(held)) + held @ yields, missing)",
+        "missing",
+    ),
     Fault("impulse as an acceleration", "reference/impulse.py", "state.road[1] = march", "state.road[2] = march"),
     Fault("one road for all", "reference/impulse.py", "np.mean(records, axis=0)", "records[0]"),
     Fault("reflections unseen", "reference/impulse.py", "share ** (2 * len(roads))", "0 * share"),

@@ -172,7 +172,7 @@ def compare(
     methods
         Names with commas between them: moving-frf, moving-frf-fe, moving-frf-fe-plain, duhamel, and with a vehicle
         cdfm, cdfm-window, cdfm-weight, sim, with prescribed loads newmark, newmark-window; the usual ones by
-        default.
+        default. Beside cdfm and newmark stands their variant on a road that travels along.
     output
         The folder to write into; out/NAME-compared beside the scenario by default.
     curve
@@ -184,7 +184,7 @@ def compare(
         stages.report("loading", 0.0)
         from movingfrf import comparison_output as written
         from movingfrf.comparison import compare as compared
-        from movingfrf.comparison_report import render, tables
+        from movingfrf.comparison_report import findings, render, tables
         from movingfrf.output import replacing
         from movingfrf.scenario import read_scenario
 
@@ -205,6 +205,7 @@ def compare(
                 (temporary / name).write_text(text, encoding="utf-8")
     for table in tables(found):
         _print_table(console, table)
+    _print_findings(console, findings(found))
     for name in texts:
         console.print(f"wrote {folder / name}", soft_wrap=True)
 
@@ -276,10 +277,13 @@ def _print_result(console: Console, result: xr.Dataset, found: list[Measure]) ->
     for table in tables.values():
         console.print(table)
         console.print()
-    findings = json.loads(result.attrs["findings"])
-    console.print("Findings" if findings else "Findings: none", style="bold")
-    for finding in findings:
-        console.print(f"- {finding['message']}", soft_wrap=True)
+    _print_findings(console, [finding["message"] for finding in json.loads(result.attrs["findings"])])
+
+
+def _print_findings(console: Console, messages: list[str]) -> None:
+    console.print("Findings" if messages else "Findings: none", style="bold")
+    for message in messages:
+        console.print(f"- {message}", soft_wrap=True)
 
 
 def _print_table(console: Console, table: TableForReading) -> None:

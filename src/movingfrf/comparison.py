@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from movingfrf._checks import FloatArray, ValidityWarning
-from movingfrf.methods import WITH_LOADS, WITH_VEHICLE, Case, Method, chosen, elements, newmark, stepped
+from movingfrf._checks import FloatArray, SolveError, ValidityWarning
+from movingfrf.methods import AROUND, WITH_LOADS, WITH_VEHICLE, Case, Method, chosen, elements, newmark, stepped
 from movingfrf.progress import Progress, silent
 from movingfrf.scenario import Scenario, parse_scenario
 
@@ -34,11 +34,12 @@ if TYPE_CHECKING:
 # Steps of the error–time figure, relative to the scenario's own: powers of two, so that all have times in common.
 STEPS = (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)
 
-# The converged answer: its movement at which it counts as converged, and how often it is refined at most.
-CONVERGED, REFINEMENTS = 5e-6, 4
+# The converged answer: its movement at which it counts as converged, and at which it is none; how often it is
+# refined at most; the longest road around the vehicle, in lengths over which it bends.
+CONVERGED, HOPELESS, REFINEMENTS, WIDEST = 5e-6, 5e-2, 4, 200.0
 
-# Errors at which methods are compared for time.
-TARGETS = (1e-3, 1e-4)
+# Errors at which methods are compared for time, and the share of them that the ends of a road may add.
+TARGETS, UNSEEN = (1e-3, 1e-4), 0.2
 
 # Runs that are timed: until so many, or until they have taken so long together [s].
 RUNS, PATIENCE = 3, 2.0
@@ -61,6 +62,7 @@ class Row(NamedTuple):
     relative_l2: dict[str, float]
     maximum_error: dict[str, float]
     ratio: float  # of its time to that of moving-frf; nan without that
+    findings: list[str]  # what the method itself says about the validity of its result
 
 
 class Point(NamedTuple):
@@ -81,6 +83,7 @@ class Reference(NamedTuple):
     movement: dict[str, float]
     finest_step: float
     finest_element: float
+    around: float  # road at each side that the compared errors do not see, in lengths over which it bends
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -155,8 +158,10 @@ def compare(
     for case in (own, replace(own, element=elements(scenario)[0])):
         case.road(travels=True)  # refuses what cannot be divided before anything long begins
     with threadpool_limits(limits=1), _quiet():
-        reference = converged(scenario, progress)
+        # Whatever a method refuses it refuses here, before anything long begins.
         _warm_up(own, compared, progress)
+        reference = converged(scenario, progress)
+        own = replace(own, around=reference.around)
         rows = [_row(name, method, own, reference, memory, progress) for name, method in compared.items()]
         points = _curve(own, compared, reference, progress) if curve else []
     first = next((row for row in rows if row.method == "moving-frf"), None)
@@ -205,7 +210,7 @@ def quantities(result: xr.Dataset, scenario: Scenario) -> Quantities:
 
 
 def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
-    """Refine mesh and step together until the extrapolated answer no longer moves.
+    """Lengthen the road, then refine mesh and step together, until the extrapolated answer no longer moves.
 
     Errors fall with the square of the step, or faster, so that (4 fine − coarse)/3 is the better answer.
 
@@ -220,28 +225,53 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
     -------
     Reference
         At the scenario's own steps.
+
+    Raises
+    ------
+    SolveError
+        If the answer does not converge.
     """
     step, element = scenario.journey.time_step, elements(scenario)[0]
     prepare = stepped if scenario.loads is None else newmark
-    answers: list[Quantities] = []
-    coarse: Quantities = {}
-    movement: dict[str, float] = {}
-    for level in range(REFINEMENTS + 1):
-        case = Case(scenario=scenario, time_step=step / 2**level, element=element / 2**level)
 
-        def told(stage: str, fraction: float, level: int = level) -> None:
+    def solved(level: int, around: float) -> Quantities:
+        case = Case(scenario=scenario, time_step=step / 2**level, element=element / 2**level, around=around)
+
+        def told(stage: str, fraction: float) -> None:
             progress(f"converged answer, refinement {level}, {stage}", fraction)
 
         result = prepare(case, travels=True, progress=told)()
-        fine = {name: values[:: 2**level].copy() for name, values in quantities(result, scenario).items()}
-        if coarse:
-            answers.append({name: (4 * fine[name] - coarse[name]) / 3 for name in fine})
+        return {name: values[:: 2**level].copy() for name, values in quantities(result, scenario).items()}
+
+    # First the length of the road, coarsely: what comes back from its ends changes the answer like a mesh error.
+    around, coarse, enough = AROUND, solved(0, AROUND), math.nan
+    while True:
+        wider = solved(0, 2 * around)
+        from_ends = relative_l2(coarse, wider)
+        if math.isnan(enough) and next(iter(from_ends.values())) <= UNSEEN * min(TARGETS):
+            enough = around
+        if max(from_ends.values()) <= CONVERGED or around >= WIDEST:
+            break
+        around, coarse = 2 * around, wider
+    answers: list[Quantities] = []
+    movement: dict[str, float] = {}
+    for level in range(1, REFINEMENTS + 1):
+        fine = solved(level, around)
+        answers.append({name: (4 * fine[name] - coarse[name]) / 3 for name in fine})
         coarse = fine
         if len(answers) > 1:
             movement = relative_l2(answers[-2], answers[-1])
             if max(movement.values()) <= CONVERGED:
                 break
-    return Reference(answers[-1], step, movement, case.time_step, case.element)
+    movement = {name: max(moved, from_ends[name]) for name, moved in movement.items()}
+    if not min(movement.values()) <= HOPELESS:
+        raise SolveError(
+            f"the answer from the time domain does not converge: it still moves by {min(movement.values()):.1e} "
+            f"when step and elements are halved for the last time, to {step / 2**level:.3g} s; the scenario's "
+            f"time_step, {step:g} s, is too long, or its loads begin or end too abruptly"
+        )
+    enough = around if math.isnan(enough) else enough
+    return Reference(answers[-1], step, movement, step / 2**level, element / 2**level, enough)
 
 
 def relative_l2(found: Quantities, wanted: Quantities) -> dict[str, float]:
@@ -334,6 +364,10 @@ def _timed(method: Method, case: Case) -> tuple[float, float, xr.Dataset]:
 def _row(name: str, method: Method, case: Case, reference: Reference, memory: bool, progress: Progress) -> Row:
     progress(f"{name}, {case.time_step:g} s", 0.0)
     setup, solve, result = _timed(method, case)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ValidityWarning)
+        method.prepare(case)()
+    said = [str(warning.message) for warning in caught if issubclass(warning.category, ValidityWarning)]
     found, wanted = _aligned(result, case, reference)
     if memory:
         progress(f"{name}, memory", 0.5)
@@ -347,6 +381,7 @@ def _row(name: str, method: Method, case: Case, reference: Reference, memory: bo
         relative_l2(found, wanted),
         maximum_error(found, wanted),
         math.nan,
+        list(dict.fromkeys(said)),
     )
 
 
@@ -436,6 +471,7 @@ def peak_memory(name: str, case: Case) -> int:
         "folder": str(scenario.folder),
         "time_step": case.time_step,
         "element": case.element,
+        "around": case.around,
     }
     command = [sys.executable, "-m", "movingfrf.comparison"]
     done = subprocess.run(command, input=json.dumps(asked), capture_output=True, text=True, check=False)
@@ -447,7 +483,7 @@ def peak_memory(name: str, case: Case) -> int:
 def _measure_memory(asked: Mapping[str, Any]) -> int:
     """Measure the peak in this process."""
     scenario = parse_scenario(asked["text"], folder=asked["folder"])
-    case = Case(scenario=scenario, time_step=asked["time_step"], element=asked["element"])
+    case = Case(scenario=scenario, time_step=asked["time_step"], element=asked["element"], around=asked["around"])
     method = (WITH_VEHICLE if scenario.loads is None else WITH_LOADS)[asked["method"]]
     with threadpool_limits(limits=1), _quiet():
         _warm_up(case, {asked["method"]: method}, silent)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from movingfrf import illustrations, plots
 from movingfrf.comparison import TARGETS, Comparison, Point, ratios
 from movingfrf.illustrations import Illustration
-from movingfrf.methods import BESIDE, WITH_LOADS, WITH_VEHICLE
+from movingfrf.methods import BESIDE, WITH_LOADS, WITH_VEHICLE, compiles
 from movingfrf.page import Column, Row, Setting, Table, page
 from movingfrf.reference.marching import numba_is_there
 from movingfrf.version import VERSION
@@ -51,7 +51,7 @@ def render(comparison: Comparison) -> str:
         version=VERSION,
         summary=_summary(comparison),
         settings=_settings(comparison),
-        findings=_findings(comparison),
+        findings=findings(comparison),
         no_findings="No findings: the converged answer moves far less than the errors that are read from it.",
         tables=tables(comparison),
         figures=figures,
@@ -110,7 +110,7 @@ def _settings(comparison: Comparison) -> list[Setting]:
         Setting("Duration", f"{plain(journey.duration)} s"),
         Setting("Time step", f"{plain(1e3 * journey.time_step)} ms", "of the table"),
         Setting("Threads", "1"),
-        Setting("Compiled loops", "numba" if numba_is_there() else "not installed"),
+        Setting("Steps", "compiled by numba" if compiles(comparison.scenario.guideway) else "NumPy and LAPACK"),
         Setting(
             "Converged answer",
             f"{plain(1e3 * reference.finest_step)} ms, {plain(reference.finest_element)} m",
@@ -119,18 +119,39 @@ def _settings(comparison: Comparison) -> list[Setting]:
     ]
 
 
-def _findings(comparison: Comparison) -> list[str]:
-    found = []
+def findings(comparison: Comparison) -> list[str]:
+    """Say what to know about a comparison, in sentences.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        What `compare` found.
+
+    Returns
+    -------
+    list of str
+        What the methods say of their own results first.
+    """
+    said: dict[str, list[str]] = {}
+    for row in comparison.rows:
+        for message in row.findings:
+            said.setdefault(message, []).append(row.method)
+    found = [f"{', '.join(methods)}: {message}." for message, methods in said.items()]
     movement = max(comparison.reference.movement.values())
     if not movement <= 0.1 * min(TARGETS):
         found.append(
             f"The converged answer still moves by {number(movement, 2)} when it is refined; errors below ten times "
             "that say little."
         )
-    if not numba_is_there():
+    if not compiles(comparison.scenario.guideway):
         found.append(
-            "The compiled loops are not installed (pip install movingfrf[fast]); times of stepping methods are "
-            "those of NumPy and LAPACK, many times longer."
+            "The steps of cdfm, sim and newmark are taken in NumPy and LAPACK, some forty times more slowly than "
+            "compiled ones: "
+            + (
+                "the compiled loops take roads without layers of mass only."
+                if numba_is_there()
+                else "numba is not installed (pip install movingfrf[fast])."
+            )
         )
     for target in comparison.equal_error:
         missing = [name for name, seconds in comparison.equal_error[target].items() if math.isnan(seconds)]
@@ -214,7 +235,8 @@ def _equal_error_table(comparison: Comparison) -> Table:
 def _reference_table(comparison: Comparison) -> Table:
     movement = comparison.reference.movement
     return Table(
-        "The converged answer: its movement (relative L2, the worst channel) when mesh and step were halved last.",
+        "The converged answer: its movement (relative L2, the worst channel) when mesh and step were halved last, "
+        "or the road made twice as long.",
         "quantity",
         [Column("movement", "")],
         [Row(_name(name), [number(value, 2)]) for name, value in movement.items()],
@@ -283,6 +305,7 @@ def _error_over_time(comparison: Comparison, quantity: str, ax: Axes, *, targets
                 label=name if line is lines[-1] else None,
             )
     ax.set(xscale="log", yscale="log", xlabel="time, set-up included [s]", ylabel="relative L2 error")
+    ax.xaxis.set_minor_formatter("")
     return ax
 
 

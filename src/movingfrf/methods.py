@@ -12,14 +12,14 @@ import numpy as np
 
 from movingfrf._checks import FloatArray
 from movingfrf.guideways.base import Guideway
-from movingfrf.guideways.track import EulerBernoulliBeam, Track
+from movingfrf.guideways.track import EulerBernoulliBeam, OnMass, Track
 from movingfrf.journey import Journey
 from movingfrf.progress import Progress, silent
 from movingfrf.reference.coupled import prepared
 from movingfrf.reference.duhamel import duhamel, duhamel_loads
 from movingfrf.reference.finite_guideway import FiniteGuideway, bending_length, finite_track
 from movingfrf.reference.impulse import CANCELLING, struck_track
-from movingfrf.reference.marching import SOLVED, Iteration
+from movingfrf.reference.marching import SOLVED, Iteration, numba_is_there
 from movingfrf.reference.moving_load import newmark_loads
 from movingfrf.scenario import Scenario
 from movingfrf.simulation import moving_loads, simulate
@@ -27,8 +27,8 @@ from movingfrf.simulation import moving_loads, simulate
 if TYPE_CHECKING:
     import xarray as xr
 
-# Road in front of and behind the vehicle, and how much of it absorbs, in lengths (4 EI/k)^¼ over which it bends.
-AROUND, ABSORBING = 20.0, 17.0
+# Road in front of and behind the vehicle, in lengths (4 EI/k)^¼ over which it bends; the share of it that absorbs.
+AROUND, ABSORBING = 14.0, 0.6
 
 # Elements that are tried, in the same lengths (rounded).
 ELEMENTS = (0.3, 0.15)
@@ -36,7 +36,7 @@ ELEMENTS = (0.3, 0.15)
 # Time for which weights travel over the smooth road before a stepped record begins [s].
 RUN_IN = 1.0
 
-# Shortest step of the struck road, of which the step of Duhamel's integral is a whole multiple [s].
+# Longest step of the struck road, of which the step of Duhamel's integral is a whole multiple [s].
 STRIKE_STEP = CANCELLING.time_step
 
 Solve = Callable[[], "xr.Dataset"]
@@ -54,11 +54,14 @@ class Case:
         Step in time [s].
     element : float
         Length of an element [m].
+    around : float
+        Road in front of and behind the vehicle, in lengths over which it bends.
     """
 
     scenario: Scenario
     time_step: float
     element: float
+    around: float = AROUND
 
     @property
     def journey(self) -> Journey:
@@ -97,19 +100,20 @@ class Case:
 
     def road(self, *, travels: bool) -> FiniteGuideway:
         """Cut out what the journey needs: all of it, or what travels along."""
-        around = AROUND * bending_length(self.track)
+        around = self.around * bending_length(self.track)
         first, last = self.places.min() - around, self.places.max() + around
         if not travels:
             journey = self.journey
             before = RUN_IN * journey.speed if self.scenario.loads is None else 0.0
             first += journey.start - before
             last += journey.start + journey.speed * journey.time_step * journey.samples
+        # Nodes at multiples of the element, wherever the road ends: its length must not change the mesh.
         return finite_track(
             self.track,
-            first=float(first),
-            last=float(last),
+            first=math.floor(first / self.element) * self.element,
+            last=math.ceil(last / self.element) * self.element,
             element=self.element,
-            absorbing=ABSORBING * bending_length(self.track),
+            absorbing=ABSORBING * around,
             travels=travels,
         )
 
@@ -315,6 +319,11 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
         )
     shown = [other for name in wanted for other in (name, BESIDE.get(name, name))]
     return {name: known[name] for name in dict.fromkeys(shown)}
+
+
+def compiles(guideway: Guideway) -> bool:
+    """Tell whether steps on this guideway are compiled: numba is there and the foundation has no mass."""
+    return numba_is_there() and isinstance(guideway, Track) and not isinstance(guideway.foundation, OnMass)
 
 
 def elements(scenario: Scenario) -> list[float]:

@@ -12,14 +12,14 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from movingfrf.reference.finite_guideway import SAME_PLACE
+from movingfrf.reference.marching import HUGE, TINY
+
 # A product and a sum may be rounded once instead of twice; nothing else that changes results is allowed.
 FAST = {"contract", "nsz"}
 
 # Half-width of the bands.
 WIDTH = 3
-
-# Contact forces [N] that are nothing, and that are beyond all measure: the exchange of forces has run away.
-TINY, HUGE = 1e-9, 1e30
 
 
 @njit(cache=True, fastmath=FAST)
@@ -113,15 +113,37 @@ def influence(rows, columns, core, reach, first):
     `first` (n,) receives where each row begins; returns (n, reach).
     """
     n = first.size
+    last = n - 1
+    half = rows.shape[0]
+    side = reach // 2
     cut = np.empty((n, reach))
-    whole = np.empty(n)
+    whole = np.zeros(n)
     middle = np.empty(core.shape[0])
     for i in range(n):
-        whole[:] = 0.0
-        whole[i] = 1.0
-        solve(rows, columns, core, whole, middle)
-        first[i] = min(max(i - reach // 2, 0), n - reach)
+        first[i] = min(max(i - side, 0), n - reach)
+        # Away from the core a row needs no more of the sweeps than its own reach.
+        if i + side < half or last - i + side < half:
+            lower = 0 if i + side < half else 1
+            begin = i if lower == 0 else last - i
+            a1 = a2 = a3 = 0.0
+            for j in range(begin, begin + side):
+                a = ((-rows[j, 3 * lower + 2] * a3) - rows[j, 3 * lower + 1] * a2) - rows[j, 3 * lower] * a1
+                if j == begin:
+                    a = 1.0
+                whole[j if lower == 0 else last - j] = a
+                a3, a2, a1 = a2, a1, a
+            a1 = a2 = a3 = 0.0
+            for j in range(begin + side - 1, max(begin - side, 0) - 1, -1):
+                at = j if lower == 0 else last - j
+                a = whole[at] * columns[j, 4 * lower + 3] - columns[j, 4 * lower + 2] * a3
+                a = (a - columns[j, 4 * lower + 1] * a2) - columns[j, 4 * lower] * a1
+                whole[at] = a
+                a3, a2, a1 = a2, a1, a
+        else:
+            whole[i] = 1.0
+            solve(rows, columns, core, whole, middle)
         cut[i] = whole[first[i] : first[i] + reach]
+        whole[:] = 0.0
     return cut
 
 
@@ -337,7 +359,7 @@ def march(
     for step in range(begin + 1, end + 1):
         travelled = speed * dt * (origin + step)
         if travels:
-            elements = int(np.floor(travelled / mesh[1] + 1e-9)) - shifted[0]
+            elements = int(np.floor(travelled / mesh[1] + SAME_PLACE)) - shifted[0]
             if elements > 0:
                 shifted[0] += elements
                 gone = min(2 * elements, n)
@@ -500,6 +522,7 @@ def convolve(
     dt,
     now,
     backwards,
+    begun,
     vehicle_inverse,
     vehicle_damping,
     vehicle_stiffness,
@@ -555,6 +578,8 @@ def convolve(
             total = 0.0
             for s in range(k):
                 total += dot(backwards[j, s, memory - past :], force_out[s, step - past : step])
+            if step < begun.shape[1]:
+                total += begun[j, step]
             known[j] = total
             older = b * deflection_out[j, step - 1] + c * deflection_out[j, max(step - 2, 0)]
             up = dup = 0.0

@@ -14,6 +14,7 @@ import movingfrf.findings as find
 from movingfrf._checks import Checks, FloatArray, SolveError, checking, require_memory
 from movingfrf.journey import Journey
 from movingfrf.progress import Progress, silent
+from movingfrf.reference.factors import solver
 from movingfrf.reference.finite_guideway import SAME_PLACE, FiniteGuideway
 from movingfrf.reference.marching import SOLVED, Iteration, March, State, law_of, no_vehicle
 from movingfrf.reference.schemes import Scheme, scheme_named
@@ -32,8 +33,17 @@ MOST_ROUNDS = 5
 # Contact forces that differ by no more than this share agree.
 AGREED = 1e-9
 
+# Change of the steady deflection, from one element to the next, at which the run-in was too short.
+UNSETTLED = 1e-3
+
 # Unknowns of which all natural frequencies are computed to find the highest.
 FEW = 50
+
+# Share of a road at which nothing special happens.
+ODD = 0.43219
+
+# Places of the road at which its answer to a contact spring is looked at.
+PLACES = 65
 
 # A vehicle whose contacts move as a rigid body allows is not held by the road: relative stiffness that is rounding.
 ROUNDING = 1e-9
@@ -45,6 +55,7 @@ class Steady(NamedTuple):
     load: FloatArray  # (contact,) [N]
     deflection: FloatArray  # (contact,) [m]
     motion: FloatArray  # (dof,) about the vehicle at rest on a rigid road
+    findings: list[find.Finding]
 
 
 def cdfm(
@@ -277,9 +288,11 @@ def prepared(
     Returns
     -------
     callable
-        Steps through the journey, once, and returns the result of `cdfm` or `sim`.
+        Steps through the journey and returns the result of `cdfm` or `sim`.
     """
     road, vehicle, profile = parts
+    with checking() as check:
+        require_kinds(check, road=(road, FiniteGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile))
     with checking() as check:
         check.not_negative("run_in", run_in, "s")
         row = scheme_named(check, scheme)
@@ -287,13 +300,19 @@ def prepared(
         if places.size and (superposed or road.travels):
             check.refuse("observe", "must be empty on a road that travels along and where the weight is superposed")
     with checking() as check:
-        if places.size:
-            require_on_road(check, road, places, (0.0, 0.0))
+        if places.size and not road.interval[0] <= places.min() <= places.max() <= road.interval[1]:
+            check.refuse(
+                "observe",
+                f"must lie on the road, {road.interval[0]:.6g} m to {road.interval[1]:.6g} m, got "
+                f"{places.tolist()} m",
+            )
         positions = journey.start * (not road.travels) + vehicle.positions
         before, after = -journey.speed * run_in, journey.speed * journey.time_step * journey.samples
         # A road that travels along follows element by element.
         require_on_road(check, road, positions, (0.0, road.spacing) if road.travels else (before, after))
         require_apart(check, road, positions)
+        if any(contact.damping for contact in vehicle.contacts):
+            require_slopes(check, road)
         require_stable_scheme(check, road, row, journey.time_step, vehicle)
     channels = 5 * len(vehicle.contacts) + 2 * len(vehicle.dof_names)
     require_memory(8.0 * channels * journey.samples, f"{journey.samples} steps of {journey.time_step:g} s")
@@ -312,17 +331,16 @@ def prepared(
     excitation = seen_in_time(profile, vehicle, journey)
     run_in_steps = round(run_in / journey.time_step)
     steady, state = steady_travel(march, vehicle, run_in_steps, progress)
+    loads = np.zeros((1, positions.size)) if superposed else vehicle.static_loads[None]
+    state = march.at_rest() if superposed else state
+    roughness, rate = excitation.roughness, excitation.rate
+    assert rate is not None
+    march.begun(state, roughness[0], rate[0], loads[0])
     march.prepare()
 
     def step() -> xr.Dataset:
-        assert excitation.rate is not None
         record = march.run(
-            journey.samples - 1,
-            march.at_rest() if superposed else state,
-            roughness=excitation.roughness,
-            rate=excitation.rate,
-            loads=np.zeros((1, positions.size)) if superposed else vehicle.static_loads[None],
-            progress=progress,
+            journey.samples - 1, state.copied(), roughness=roughness, rate=rate, loads=loads, progress=progress
         )
         force, deflection, motion = record.force, record.deflection, record.motion
         if superposed:
@@ -344,7 +362,9 @@ def prepared(
             "road_dofs": road.dofs,
             "road_spacing": float(road.spacing),
             "iterations": record.iterations,
-            "findings": find.announced(find.contact_lost(force + steady.load, journey.time_step)),
+            "findings": find.announced(
+                [*steady.findings, *find.contact_lost(force + steady.load, journey.time_step)]
+            ),
         }
         values = {
             "contact_force": force,
@@ -448,7 +468,8 @@ def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress
     deflection = yields @ load
     alone = replace(march, law=no_vehicle(march.contacts.size), iteration=SOLVED, observers=np.empty(0))
     nothing = np.zeros((steps + 1, march.contacts.size))
-    for _ in range(MOST_ROUNDS):
+    findings: list[find.Finding] = []
+    for _ in range(MOST_ROUNDS if steps else 1):
         state = alone.at_rest(-steps)
         state.road[0] = sags @ load
         state.acting[:] = load
@@ -464,16 +485,24 @@ def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress
             stage="run-in",
             progress=progress,
         )
-        deflection = _passage(march, record.deflection)
-        found = vehicle.static_loads - held @ deflection
-        if np.abs(found - load).max() <= AGREED * np.abs(found).max():
+        passage = _passage(march, steps)
+        deflection = record.deflection[-passage:].mean(axis=0)
+        findings = _settling(record.deflection, passage, march.time_step)
+        missing = vehicle.static_loads - held @ deflection - load
+        if np.abs(missing).max() <= AGREED * np.abs(load).max():
             break
-        load = found
+        # In travel the road yields nearly as it does at rest.
+        load = load + np.linalg.solve(np.eye(len(held)) + held @ yields, missing)
+    else:
+        raise SolveError(
+            f"the vehicle's weight and the sag of the road under it do not come to agree in steady travel at "
+            f"{march.speed:g} m/s"
+        )
     law = march.law
     motion = np.linalg.solve(vehicle.held_stiffness, law.contact_map.T @ (law.springs * deflection))
     state.body = np.zeros((3, motion.size))
     state.body[0] = motion
-    return Steady(load, deflection, motion), state
+    return Steady(load, deflection, motion, findings), state
 
 
 def _sags(march: March, step: int) -> FloatArray:
@@ -487,10 +516,48 @@ def _sags(march: March, step: int) -> FloatArray:
     return factor.solve(march.road.rows(march.places(step)).toarray().T)
 
 
-def _passage(march: March, history: FloatArray) -> FloatArray:
-    """Average over the last passage of an element: between its nodes a mesh gives way a little more or less."""
+def _passage(march: March, most: int) -> int:
+    """Count the steps in which an element passes: between its nodes a mesh gives way a little more or less."""
     steps = march.road.spacing / (march.speed * march.time_step)
-    return history[-max(1, min(round(steps), len(history))) :].mean(axis=0)
+    return max(1, min(round(steps), most))
+
+
+def _settling(deflection: FloatArray, passage: int, time_step: float) -> list[find.Finding]:
+    """Compare the last two passages of an element."""
+    if len(deflection) <= 2 * passage:
+        return []
+    last, before = deflection[-passage:].mean(axis=0), deflection[-2 * passage : -passage].mean(axis=0)
+    # What is left shrinks from passage to passage; from one to the next it changes by about as much as is left.
+    change = float(np.abs(last - before).max() / np.abs(last).max())
+    if change <= UNSETTLED:
+        return []
+    return [
+        find.Finding(
+            "not_settled",
+            f"the deflection under the vehicle's weight still changes by {change:.1e} from one element to the next "
+            f"after a run-in of {time_step * (len(deflection) - 1):.3g} s; a longer run_in would let it settle",
+        )
+    ]
+
+
+def require_kinds(check: Checks, **given: tuple[object, type]) -> None:
+    """Refuse arguments of another kind, and say what makes the right one.
+
+    Parameters
+    ----------
+    check : Checks
+        Collects the faults.
+    given : tuple of object and type
+        By the argument's name, what was given and what it must be.
+    """
+    makers = {
+        "FiniteGuideway": ", which finite_track cuts out of a track",
+        "SampledGuideway": ", which struck_track makes of a track",
+    }
+    for name, (value, kind) in given.items():
+        if not isinstance(value, kind):
+            hint = makers.get(kind.__name__, "")
+            check.refuse(name, f"must be a {kind.__name__}{hint}, got a {type(value).__name__}")
 
 
 def require_on_road(
@@ -516,6 +583,31 @@ def require_on_road(
             "road",
             f"must reach from {first:.6g} m to {last:.6g} m, where the contacts travel (run-in included), but it "
             f"reaches from {road.interval[0]:.6g} m to {road.interval[1]:.6g} m",
+        )
+
+
+def require_slopes(check: Checks, road: FiniteGuideway) -> None:
+    """Refuse an interpolation whose first derivative is not the slope of its rows; a dashpot needs it.
+
+    Parameters
+    ----------
+    check : Checks
+        Collects the fault.
+    road : FiniteGuideway
+        The road.
+    """
+    first, last = road.interval
+    middle, step = first + ODD * (last - first), 1e-8 * (last - first)
+    rows = road.rows(np.array([middle - step, middle, middle + step])).toarray()
+    slope = road.rows(np.array([middle]), 1).toarray()[0]
+    # Where a row has a kink, as linear functions have at a node, either side will do.
+    sides = [(rows[1] - rows[0]) / step, (rows[2] - rows[1]) / step]
+    scale = max(np.abs(sides).max(), np.abs(slope).max())
+    if scale and min(np.abs(slope - side).max() for side in sides) > 1e-2 * scale:
+        check.refuse(
+            "interpolation",
+            f"must give with derivative 1 the slopes of its rows [1/m], which a contact with damping needs; at "
+            f"{middle:.6g} m it does not",
         )
 
 
@@ -560,16 +652,19 @@ def require_stable_scheme(
         )
         check.refuse("scheme", f"is unstable at every step, since {condition} does not hold: {tuple(scheme)}")
         return
-    highest, what = _highest(road), "the road's mesh"
+    highest, what = _highest(road), "the road's elements"
     if vehicle is not None:
-        on_its_springs = float(eigvalsh(vehicle.held_stiffness, vehicle.matrices[0])[-1] ** 0.5)
-        if on_its_springs > highest:
-            highest, what = on_its_springs, "the vehicle"
+        # No vibration of the two together is faster than this: stiffnesses add, and so do squares of frequencies.
+        springs = max(contact.stiffness for contact in vehicle.contacts)
+        rows = road.rows(np.linspace(*road.interval, PLACES)).toarray()
+        moved = float(np.einsum("pd,dp->p", rows, solver(road.mass).solve(rows.T)).max())
+        own = float(eigvalsh(vehicle.held_stiffness, vehicle.matrices[0])[-1])
+        highest, what = float(np.sqrt(highest**2 + own + springs * moved)), "road and vehicle"
     if time_step * highest > limit:
         check.refuse(
             "time_step",
             f"must be at most {limit / highest:.3g} s: with β = {scheme.beta:.4g} < γ/2 = {0.5 * scheme.gamma:.4g} "
-            f"the scheme is stable only while ω Δt ≤ {limit:.4g}, and {what} vibrates at up to "
+            f"the scheme is stable only while ω Δt ≤ {limit:.4g}, and {what} vibrate at up to "
             f"{highest / (2 * np.pi):.4g} Hz, got {time_step!r} s",
         )
 

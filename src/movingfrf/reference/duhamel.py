@@ -13,7 +13,7 @@ from movingfrf._checks import FloatArray, checking, require_memory
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.journey import Journey
 from movingfrf.progress import Progress, silent
-from movingfrf.reference.coupled import seen_in_time
+from movingfrf.reference.coupled import require_kinds, seen_in_time
 from movingfrf.reference.marching import STRIDE, Law, law_of, numba_is_there
 from movingfrf.reference.schemes import SCHEMES
 from movingfrf.roughness.profiles import Profile
@@ -89,10 +89,12 @@ def duhamel(
         If contact would be lost.
     """
     journey = Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend)
+    with checking() as check:
+        require_kinds(check, road=(road, SampledGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile))
     road.require_speed(speed)
     positions = vehicle.positions
     columns = road.columns(positions[:, None] - positions)
-    whole, _, _ = weights(road, time_step)
+    whole, _, earlier = weights(road, time_step)
     channels = 5 * positions.size + 2 * len(vehicle.dof_names)
     require_memory(8.0 * channels * journey.samples, f"{journey.samples} steps of {time_step:g} s")
     excitation = seen_in_time(profile, vehicle, journey)
@@ -111,6 +113,10 @@ def duhamel(
     backwards = np.ascontiguousarray(kernel[:, :, :0:-1])
     advance = _compiled() if (numba_is_there() if compiled is None else compiled) else _plain
     state = np.zeros((3, len(law.mass)))
+    # The road's elevation may begin with a jump: forces act from t = 0 on, the first one by half of its hat.
+    first = law.springs * excitation.roughness[0] + law.dashpots * excitation.rate[0]
+    state[2] = -np.linalg.solve(law.mass, law.contact_map.T @ first)
+    begun = np.einsum("tij,j->it", earlier[:, columns], first)
     vehicle_inverse = np.linalg.inv(law.mass + _lift(law, time_step))
     for begin in range(0, samples - 1, STRIDE):
         end = min(begin + STRIDE, samples - 1)
@@ -118,6 +124,7 @@ def duhamel(
             time_step,
             kernel[:, :, 0].copy(),
             backwards,
+            np.ascontiguousarray(begun),
             vehicle_inverse,
             *law[1:],
             excitation.roughness,
@@ -128,6 +135,7 @@ def duhamel(
             *record,
         )
         progress("convolving", end / (samples - 1))
+    record[0][:, 0], record[3][:, 0] = first, -np.linalg.solve(law.mass, law.contact_map.T @ first)
     force, deflection, motion, acceleration = (values.T for values in record)
     values = {
         **journey.coordinates(vehicle),
@@ -205,6 +213,8 @@ def duhamel_loads(
         points = at if observe is None else check.array("observe", observe, "m", (None,))
         if not check.faults and (len(forces) < 2 or not at.size or not points.size):
             check.refuse("force", "must have at least two samples, one load and one observation point")
+    with checking() as check:
+        require_kinds(check, road=(road, SampledGuideway))
     road.require_speed(speed)
     columns = road.columns(points[:, None] - at)
     whole, _, first = weights(road, time_step)
@@ -288,6 +298,7 @@ def _plain(
     dt: float,
     now: FloatArray,
     backwards: FloatArray,
+    begun: FloatArray,
     vehicle_inverse: FloatArray,
     vehicle_damping: FloatArray,
     vehicle_stiffness: FloatArray,
@@ -315,6 +326,8 @@ def _plain(
         past = min(step, memory)
         seen = force_out[:, step - past : step]
         known = np.einsum("ijm,jm->i", backwards[:, :, memory - past :], seen)
+        if step < begun.shape[1]:
+            known += begun[:, step]
         # Velocity of the moving contact by backward differences; of second order once there are two steps behind.
         a, b, c = (1.5, -2.0, 0.5) if step > 1 else (1.0, -1.0, 0.0)
         older = b * deflection_out[:, step - 1] + c * deflection_out[:, max(step - 2, 0)]

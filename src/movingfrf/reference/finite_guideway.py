@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._checks import Checks, FloatArray, IntArray, checking, shown
 from movingfrf.guideways.track import EulerBernoulliBeam, Foundation, OnMass, ShearLayer, Spring, Track
+from movingfrf.reference.factors import is_definite
 from movingfrf.smooth import smooth_step
 
 # Positions [m] and order of the derivative → one row per position, shape (position, dof).
@@ -34,11 +35,17 @@ FOLLOWING = {"absorbing", "clamped"}
 # nothing is reflected. Measured on the reference road, 15 to 20 m long: below 1e-3 of what comes in.
 ABSORPTION = 1.5
 
+# Length of such a stretch unless told otherwise [m].
+ABSORBING = 15.0
+
 # Cubic elements that a wave needs at least: with four its length is right to 1e-3.
 PER_WAVE = 4
 
 # Two positions closer than this share of an element are one.
 SAME_PLACE = 1e-9
+
+# Share of the mass, scaled to the matrix, with which semidefiniteness is tested.
+LITTLE = 1e-8
 
 # Asymmetry of a matrix, relative to its largest entry, that is rounding.
 ASYMMETRY = 1e-9
@@ -67,7 +74,7 @@ class FiniteGuideway:
     Parameters
     ----------
     mass, damping, stiffness : sparse matrix or array_like, shape (dof, dof)
-        Symmetric matrices [kg, N s/m, N/m; rotations in rad]; mass positive definite.
+        Symmetric matrices [kg, N s/m, N/m; rotations in rad]; mass positive definite, the others semidefinite.
     interpolation : callable
         Called with positions [m], shape (position,), and the order of the derivative along the road (0, or 1
         where a contact has damping); returns the rows N, shape (position, dof), sparse or not [m/m or 1/m].
@@ -83,8 +90,8 @@ class FiniteGuideway:
     Raises
     ------
     ValueError
-        If matrices disagree in shape, are not symmetric or not finite, a mass is not positive, or the
-        interpolation does not give rows of their length.
+        If matrices disagree in shape, are not symmetric, finite and definite as demanded, or the interpolation does
+        not give rows of their length.
 
     Examples
     --------
@@ -127,6 +134,7 @@ class FiniteGuideway:
                         f"at index {place}",
                     )
             if not check.faults:
+                _check_definite(check, self)
                 _check_rows(check, self)
 
     @property
@@ -152,6 +160,19 @@ def _symmetric(check: Checks, name: str, given: Any, unit: str) -> sparse.csc_ar
     elif matrix.nnz and abs(matrix - matrix.T).max() > ASYMMETRY * abs(matrix).max():
         check.refuse(name, f"must be a symmetric matrix [{unit}]")
     return matrix
+
+
+def _check_definite(check: Checks, road: FiniteGuideway) -> None:
+    """Demand a positive definite mass, and damping and stiffness that are at least semidefinite."""
+    if not is_definite(road.mass):
+        check.refuse("mass", "must be positive definite: some motion has no inertia, or a negative one")
+        return
+    heaviest = abs(road.mass).max()
+    for name, matrix in (("damping", road.damping), ("stiffness", road.stiffness)):
+        largest = abs(matrix).max() if matrix.nnz else 0.0
+        # A little of the mass makes a semidefinite matrix definite, and leaves an indefinite one what it is.
+        if largest and not is_definite(sparse.csc_array(matrix + LITTLE * largest / heaviest * road.mass)):
+            check.refuse(name, "must be positive semidefinite: some motion would be fed with energy")
 
 
 def _check_rows(check: Checks, road: FiniteGuideway) -> None:
@@ -227,7 +248,7 @@ def finite_track(
     last: float,
     element: float = 0.25,
     ends: str | tuple[str, str] = "absorbing",
-    absorbing: float = 15.0,
+    absorbing: float | None = None,
     band: float = 70.0,
     travels: bool = False,
 ) -> FiniteGuideway:
@@ -238,15 +259,15 @@ def finite_track(
     track : Track
         An Euler–Bernoulli beam on any foundation; layers of mass get unknowns of their own.
     first, last : float
-        Where the stretch begins and ends [m]; the last element may reach a little further.
+        Where the stretch begins and ends [m].
     element : float
-        Length of an element [m].
+        Length of an element [m], at most: a whole number of them fills the stretch.
     ends : str or tuple of str
         "pinned" (simply supported), "clamped", "guided", "free", or "absorbing"; one for both, or one for each.
         Absorbing ends have dashpots that grow from nothing over the length `absorbing`. A stretch that travels has
         absorbing or clamped ends.
-    absorbing : float
-        Length of that stretch at each absorbing end [m].
+    absorbing : float, optional
+        Length of that stretch at each absorbing end [m]; None: 15 m, or a third of a road that is short.
     band : float
         Highest frequency whose waves the elements shall resolve [Hz].
     travels : bool
@@ -274,10 +295,10 @@ def finite_track(
     with checking() as check:
         if not isinstance(track, Track) or not isinstance(track.beam, EulerBernoulliBeam):
             check.refuse("track", f"must have an Euler–Bernoulli beam to be cut into elements, got {shown(track)}")
-        check.finite("first", first, "m")
-        check.finite("last", last, "m")
+        first, last = check.finite("first", first, "m"), check.finite("last", last, "m")
         check.positive("element", element, "m")
-        check.not_negative("absorbing", absorbing, "m")
+        usual = min(ABSORBING, max(last - first, 0.0) / 3)
+        length = check.not_negative("absorbing", usual if absorbing is None else absorbing, "m")
         check.not_negative("band", band, "Hz")
         both = (ends, ends) if isinstance(ends, str) else tuple(ends)
         if len(both) != 2 or not all(isinstance(end, str) and end in ENDS for end in both):
@@ -287,6 +308,11 @@ def finite_track(
                 "ends",
                 f"of a road that travels along must be among {', '.join(sorted(FOLLOWING))}, so that what joins "
                 f"and leaves it is at rest, got {shown(ends)}",
+            )
+        if not check.faults and "absorbing" in both and length > 0.5 * (last - first):
+            check.refuse(
+                "absorbing",
+                f"must be at most half of the stretch, {0.5 * (last - first):.6g} m, got {length!r} m",
             )
         if not check.faults and last - first < 4 * element:
             check.refuse("last", f"must lie four elements of {element:g} m or more behind first, got {last!r} m")
@@ -312,11 +338,12 @@ def finite_track(
                 f"this track at {band:g} Hz, got {element!r} m",
             )
     count = int(np.ceil((last - first) / element - SAME_PLACE))
+    element = (last - first) / count
     integrals = [_assembled(element, count, order) for order in range(3)]
     node = np.zeros(len(layers.masses))
     node[0] = 1.0
     beam_only = sparse.diags_array(node)
-    dashpots = _absorption(count, element, both, absorbing, layers)
+    dashpots = _absorption(count, element, both, length, layers)
     mass = sparse.kron(integrals[0], sparse.diags_array(layers.masses))
     stiffness = (
         sparse.kron(track.beam.bending_stiffness * integrals[2], beam_only)
@@ -343,7 +370,7 @@ def finite_track(
         damping=of(damping),
         stiffness=of(stiffness),
         interpolation=CubicRows(mesh, kept.size),
-        interval=(float(first), float(first) + count * element),
+        interval=(float(first), float(last)),
         spacing=element,
         mesh=mesh,
         travels=travels,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import FloatArray, ValidityWarning, checking
+from movingfrf._checks import FloatArray, ValidityWarning, checking, require_memory
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import Track
 from movingfrf.progress import Progress, silent
@@ -24,6 +24,9 @@ UNDECAYED, REFLECTED, STRETCHED = 1e-3, 1e-3, 1e-2
 
 # Share of a record that counts as its end, and of the road that counts as its ends.
 LATE, OUTER = 0.05, 0.1
+
+# A response is recorded in stretches of this length [s], until one stays below this share of the largest value.
+STRETCH, FADED = 0.1, 1e-6
 
 # Longest response that is recorded unless asked for [s].
 LONGEST = 4.0
@@ -82,7 +85,8 @@ def moving_impulse_response(
     strike : float
         Where the impulse strikes [m]; at a node a mesh is most accurate.
     duration : float, optional
-        Length of the record [s]; None: as long as every point stays on the road, at most 4 s.
+        Length of the record [s]; None: until it has died away, as long as every point stays on the road and at
+        most 4 s.
     time_step : float
         Step of the record and of the stepping [s].
     band : float
@@ -157,12 +161,20 @@ def moving_impulse_response(
         for road in several:
             require_stable_scheme(check, road, row, time_step)
     steps = int(length / time_step * (1 + 1e-12))
-    records = [
-        _ringing(road, row, time_step, speed, strike, strike + at, steps, compiled, progress) for road in several
-    ]
+    require_memory(
+        32.0 * steps * at.size * len(several), f"an impulse response of {length:g} s in steps of {time_step:g} s"
+    )
+    records: list[FloatArray] = []
+    for road in several:
+        # What the first road has forgotten the others need not remember.
+        fading = FADED if duration is None and not records else 0.0
+        records.append(
+            _ringing(road, row, time_step, speed, strike, strike + at, steps, compiled, progress, fading=fading)
+        )
+        steps = len(records[0]) - 1
     response = np.mean(records, axis=0)
     found = [
-        *_undecayed(response, length),
+        *_undecayed(response, steps * time_step),
         *_stretched(band, time_step),
         *_reflected(several, row, time_step, strike, steps, band, compiled, progress),
     ]
@@ -251,8 +263,10 @@ def _ringing(
     steps: int,
     compiled: bool | None,
     progress: Progress,
+    *,
+    fading: float = 0.0,
 ) -> FloatArray:
-    """Deflection at points that travel, after a unit impulse; shape (steps + 1, point)."""
+    """Deflection at points that travel, after a unit impulse, shape (steps + 1, point); shorter if it dies away."""
     march = March(
         road=road,
         scheme=scheme,
@@ -266,10 +280,29 @@ def _ringing(
     state = march.at_rest()
     state.road[1] = march.mass_solver.solve(road.rows(np.array([strike])).toarray()[0])
     march.released(state, np.zeros(road.dofs))
-    nothing = np.zeros((steps + 1, 0))
-    return march.run(
-        steps, state, roughness=nothing, rate=nothing, loads=nothing[:1], stage="impulse", progress=progress
-    ).observed
+    stretch = max(int(STRETCH / time_step), 1)
+    pieces: list[FloatArray] = [np.zeros((1, points.size))]
+    done, largest = 0, 0.0
+    while done < steps:
+        count = min(stretch, steps - done)
+        nothing = np.zeros((count + 1, 0))
+        piece = march.run(
+            count,
+            state,
+            roughness=nothing,
+            rate=nothing,
+            loads=nothing[:1],
+            origin=done,
+            stage="impulse",
+            progress=progress,
+        ).observed[1:]
+        pieces.append(piece)
+        done += count
+        lately = float(np.abs(piece).max())
+        largest = max(largest, lately)
+        if lately <= fading * largest:
+            break
+    return np.concatenate(pieces)
 
 
 def _undecayed(response: FloatArray, length: float) -> list[str]:

@@ -13,24 +13,26 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sparse
-from scipy.linalg import lapack
-from scipy.sparse.linalg import splu
 
 from movingfrf._checks import FloatArray, IntArray, SolveError
 from movingfrf.progress import Progress, silent
-from movingfrf.reference.finite_guideway import SAME_PLACE, FiniteGuideway
+from movingfrf.reference.factors import BandSolver, SparseSolver, bands_of, half_width, indefinite, solver
+from movingfrf.reference.finite_guideway import SAME_PLACE, CubicRows, FiniteGuideway
 from movingfrf.reference.schemes import Scheme
 from movingfrf.vehicles.base import Vehicle
 
-# Steps between two looks at the keyboard, how many unknowns times steps that may be, and, in NumPy, how many entries of
-# interpolating rows, which are held for all these steps at once.
+# Steps between two looks at the keyboard, how many unknowns times steps that may be, and, in NumPy, how many
+# entries of interpolating rows, which are held for all these steps at once.
 STRIDE, WORK, ENTRIES = 20_000, 20_000_000, 1_000_000
 
-# Entries of the inverse below this share of its diagonal are zero to rounding.
-NEGLIGIBLE = 1e-18
+# Contact forces [N] that are nothing, and that are beyond all measure: the exchange of forces has run away.
+TINY, HUGE = 1e-9, 1e30
 
-# Bands wider than this are left to the sparse solver.
-WIDEST = 64
+# Unknowns that the compiled band solver needs at least.
+FEWEST = 9
+
+# Entries of the inverse below this share of its diagonal are zero to rounding.
+NEGLIGIBLE = 1e-17
 
 
 class Law(NamedTuple):
@@ -150,6 +152,30 @@ class March:
         force = force - self.road.stiffness @ u - self.road.damping @ v
         state.road[2] = self.mass_solver.solve(force)
 
+    def begun(self, state: State, roughness: FloatArray, rate: FloatArray, load: FloatArray, step: int = 0) -> None:
+        """Give a state the contact forces and accelerations that fit it and the road under the contacts.
+
+        Parameters
+        ----------
+        state : State
+            Displacements and velocities; forces and accelerations are set.
+        roughness, rate, load : ndarray, shape (contact,)
+            Elevation [m], its rate [m/s] and prescribed forces [N] at this instant.
+        step : int
+            Step of the journey at which the state stands.
+        """
+        law, road = self.law, self.road
+        (u, v, _), (z, dz, _) = state.road, state.body
+        at = self._places(self.contacts, step, state)
+        rows = road.rows(at)
+        force = law.springs * (law.contact_map @ z - rows @ u + roughness)
+        if law.dashpots.any():
+            sinking = rows @ v + self.speed * (road.rows(at, 1) @ u)
+            force += law.dashpots * (law.contact_map @ dz - sinking + rate)
+        state.acting[:] = force + load
+        state.body[2] = self._mass_inverse @ (-law.damping @ dz - law.stiffness @ z - law.contact_map.T @ force)
+        self.released(state, rows.T @ state.acting)
+
     def prepare(self) -> None:
         """Factorise now what the first step would otherwise factorise."""
         _ = self._tables if self.uses_compiled else self._solver
@@ -231,13 +257,30 @@ class March:
         force, deflection, observed, motion, acceleration = record
         return Record(force, deflection, observed, motion, acceleration, iterations)
 
+    def __post_init__(self) -> None:
+        """Refuse compiled loops where they do not apply."""
+        if self.compiled and not self._suits:
+            raise ValueError(
+                "compiled must be None or False: the compiled loops take roads of beam elements without layers of "
+                "mass, as finite_track makes them"
+            )
+
     @property
     def uses_compiled(self) -> bool:
-        """Whether the compiled loops are used: beam elements, a band of half-width three, and numba."""
-        suits = self.road.mesh is not None and _half_width(self.road.stiffness) <= 3 and self.road.dofs >= 9
-        if self.compiled is None:
-            return suits and numba_is_there()
-        return self.compiled and suits
+        """Whether the compiled loops are used: where they apply and numba is installed, unless told otherwise."""
+        return self._suits and numba_is_there() if self.compiled is None else self.compiled
+
+    @cached_property
+    def _suits(self) -> bool:
+        """Whether the road is a chain of beam elements, with bands of half-width three."""
+        road, rows = self.road, self.road.interpolation
+        return (
+            road.mesh is not None
+            and isinstance(rows, CubicRows)
+            and rows.mesh is road.mesh
+            and road.dofs >= FEWEST
+            and max(half_width(matrix) for matrix in (road.mass, road.damping, road.stiffness)) <= 3
+        )
 
     @cached_property
     def effective(self) -> sparse.csc_array:
@@ -260,13 +303,13 @@ class March:
         return np.linalg.inv(self.law.mass)
 
     @cached_property
-    def mass_solver(self) -> _BandSolver | _SparseSolver:
+    def mass_solver(self) -> BandSolver | SparseSolver:
         """Solves with the road's mass matrix."""
-        return _solver(self.road.mass)
+        return solver(self.road.mass)
 
     @cached_property
-    def _solver(self) -> _BandSolver | _SparseSolver:
-        return _solver(self.effective)
+    def _solver(self) -> BandSolver | SparseSolver:
+        return solver(self.effective)
 
     @cached_property
     def _tables(self) -> dict[str, Any]:
@@ -274,13 +317,13 @@ class March:
         from movingfrf.reference import compiled
 
         road, n = self.road, self.road.dofs
-        bands = [_bands(matrix, 3) for matrix in (self.effective, road.mass, road.damping, road.stiffness)]
+        bands = [bands_of(matrix, 3) for matrix in (self.effective, road.mass, road.damping, road.stiffness)]
         half = (n - 3) // 2
         rows, columns = np.zeros((half, 6)), np.zeros((half, 8))
         core: FloatArray = np.zeros((n - 2 * half, n - 2 * half))
         smallest = compiled.factorise(bands[0], rows, columns, core)
         if not smallest > 0 or not np.linalg.eigvalsh(core)[0] > 0:
-            raise _indefinite()
+            raise indefinite()
         core = np.linalg.inv(core)
         reach = self._reach(rows, columns, core)
         first = np.zeros(n, np.int64)
@@ -496,65 +539,11 @@ def _exchanged(
         fresh = right + force - matrix @ force
         change, size = np.abs(fresh - force).max(), np.abs(fresh).max()
         force = fresh
-        if change <= iteration.tolerance * size or size < 1e-9:
+        if change <= iteration.tolerance * size or size < TINY:
             return force, count
-        if not size < 1e30:
+        if not size < HUGE:
             break
     return force, -1
-
-
-def _indefinite() -> SolveError:
-    return SolveError(
-        "the road's matrices are inconsistent: mass, damping and stiffness together are not positive definite, so "
-        "no step can be taken"
-    )
-
-
-def _bands(matrix: sparse.csc_array, width: int) -> FloatArray:
-    """Lower bands of a symmetric matrix, `bands[d, i]` being A[i + d, i]."""
-    bands = np.zeros((width + 1, matrix.shape[0]))
-    for d in range(width + 1):
-        diagonal = matrix.diagonal(-d)
-        bands[d, : diagonal.size] = diagonal
-    return bands
-
-
-def _half_width(matrix: sparse.csc_array) -> int:
-    places = sparse.coo_array(matrix)
-    return int(np.abs(places.row - places.col).max(initial=0))
-
-
-def _solver(matrix: sparse.csc_array) -> _BandSolver | _SparseSolver:
-    """Factorise a positive definite matrix."""
-    return _BandSolver(matrix) if _half_width(matrix) <= WIDEST else _SparseSolver(matrix)
-
-
-class _BandSolver:
-    """LAPACK's band Cholesky factorisation."""
-
-    def __init__(self, matrix: sparse.csc_array) -> None:
-        self._factor, fails = lapack.dpbtrf(_bands(matrix, _half_width(matrix)), lower=1)
-        if fails:
-            raise _indefinite()
-
-    def solve(self, right: FloatArray) -> FloatArray:
-        """Solve for one or more columns."""
-        solution, _ = lapack.dpbtrs(self._factor, right, lower=1)
-        return solution
-
-
-class _SparseSolver:
-    """SuperLU, with the pivots of a symmetric matrix."""
-
-    def __init__(self, matrix: sparse.csc_array) -> None:
-        options = {"SymmetricMode": True}
-        self._factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
-        if not (self._factor.U.diagonal() > 0).all():
-            raise _indefinite()
-
-    def solve(self, right: FloatArray) -> FloatArray:
-        """Solve for one or more columns."""
-        return self._factor.solve(right)
 
 
 def numba_is_there() -> bool:

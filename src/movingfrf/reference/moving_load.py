@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._checks import FloatArray, checking, require_memory
 from movingfrf.progress import Progress, silent
-from movingfrf.reference.coupled import require_on_road, require_stable_scheme
+from movingfrf.reference.coupled import require_kinds, require_on_road, require_stable_scheme
 from movingfrf.reference.finite_guideway import FiniteGuideway
 from movingfrf.reference.marching import March, no_vehicle
 from movingfrf.reference.schemes import Scheme, scheme_named
@@ -81,6 +81,8 @@ def newmark_loads(
     >>> round(1e3 * result.deflection[-1, 0].item(), 2)  # mm
     3.74
     """
+    with checking() as check:
+        require_kinds(check, road=(road, FiniteGuideway))
     with checking() as check:
         at = check.array("positions", positions, "m", (None,))
         forces = check.array("force", force, "N", (None, at.size))

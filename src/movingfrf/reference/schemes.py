@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import NamedTuple
 
 from movingfrf._checks import Checks, shown
@@ -71,6 +72,8 @@ def scheme_named(check: Checks, given: str | Scheme) -> Scheme:
     """Find a scheme by its name, or take the row that is given."""
     if isinstance(given, Scheme):
         return given
+    if isinstance(given, tuple) and 2 <= len(given) <= 4 and all(isinstance(number, Real) for number in given):
+        return Scheme(*given)
     if not isinstance(given, str) or given not in SCHEMES:
         check.refuse("scheme", f"must be a Scheme or one of {', '.join(SCHEMES)}, got {shown(given)}")
         return SCHEMES["average_acceleration"]
