@@ -6,7 +6,7 @@ import difflib
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,10 @@ from movingfrf.reference.finite_guideway import FiniteGuideway, bending_length, 
 from movingfrf.reference.impulse import CANCELLING, struck_track
 from movingfrf.reference.marching import SOLVED, Iteration, numba_is_there
 from movingfrf.reference.moving_load import newmark_loads
+from movingfrf.roughness.profiles import Profile
 from movingfrf.scenario import Scenario
 from movingfrf.simulation import moving_loads, simulate
+from movingfrf.vehicles.base import Vehicle
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -98,6 +100,21 @@ class Case:
         at = np.arange(self.journey.samples) * self.time_step
         return np.stack([history(at) for history in self.scenario.loads.histories], axis=1)
 
+    def driven(self) -> tuple[tuple[Vehicle, Profile], dict[str, Any]]:
+        """Give vehicle and profile, and the journey as keywords, as every coupled method takes them."""
+        assert self.scenario.vehicle is not None
+        assert self.scenario.road is not None
+        journey = self.journey
+        how = {name: getattr(journey, name) for name in ("speed", "duration", "start", "time_step", "blend")}
+        return (self.scenario.vehicle, self.scenario.road.profile), how
+
+    def loaded(self) -> tuple[tuple[FloatArray, FloatArray], dict[str, Any]]:
+        """Give forces and positions, and the rest as keywords, as every method for prescribed loads takes them."""
+        assert self.scenario.loads is not None
+        loads, journey = self.scenario.loads, self.journey
+        how = {"speed": journey.speed, "time_step": journey.time_step, "observe": loads.observe}
+        return (self.forces(), loads.positions), how
+
     def road(self, *, travels: bool) -> FiniteGuideway:
         """Cut out what the journey needs: all of it, or what travels along."""
         around = self.around * bending_length(self.track)
@@ -120,32 +137,12 @@ class Case:
 
 def _transformed(case: Case, guideway: Guideway) -> Solve:
     """Solve in the frequency domain, on any guideway."""
-    scenario, journey = case.scenario, case.journey
-    if scenario.loads is not None:
-        loads = scenario.loads
-        return lambda: moving_loads(
-            guideway,
-            case.forces(),
-            loads.positions,
-            speed=journey.speed,
-            time_step=journey.time_step,
-            observe=loads.observe,
-            truncation=journey.truncation,
-        )
-    assert scenario.vehicle is not None
-    assert scenario.road is not None
-    vehicle, profile = scenario.vehicle, scenario.road.profile
-    return lambda: simulate(
-        guideway,
-        vehicle,
-        profile,
-        speed=journey.speed,
-        duration=journey.duration,
-        start=journey.start,
-        time_step=journey.time_step,
-        truncation=journey.truncation,
-        blend=journey.blend,
-    )
+    truncation = case.journey.truncation
+    if case.scenario.loads is not None:
+        given, how = case.loaded()
+        return lambda: moving_loads(guideway, *given, truncation=truncation, **how)
+    parts, travel = case.driven()
+    return lambda: simulate(guideway, *parts, truncation=truncation, **travel)
 
 
 def _moving_frf(case: Case) -> Solve:
@@ -162,36 +159,17 @@ def _moving_frf_fe_plain(case: Case) -> Solve:
 
 
 def _duhamel(case: Case) -> Solve:
-    scenario, journey = case.scenario, case.journey
     struck = struck_track(
         case.track,
-        speed=journey.speed,
+        speed=case.journey.speed,
         offsets=case.offsets,
         time_step=case.time_step / math.ceil(case.time_step / STRIKE_STEP - 1e-9),
     )
-    if scenario.loads is not None:
-        loads = scenario.loads
-        return lambda: duhamel_loads(
-            struck,
-            case.forces(),
-            loads.positions,
-            speed=journey.speed,
-            time_step=journey.time_step,
-            observe=loads.observe,
-        )
-    assert scenario.vehicle is not None
-    assert scenario.road is not None
-    vehicle, profile = scenario.vehicle, scenario.road.profile
-    return lambda: duhamel(
-        struck,
-        vehicle,
-        profile,
-        speed=journey.speed,
-        duration=journey.duration,
-        start=journey.start,
-        time_step=journey.time_step,
-        blend=journey.blend,
-    )
+    if case.scenario.loads is not None:
+        given, how = case.loaded()
+        return lambda: duhamel_loads(struck, *given, **how)
+    parts, travel = case.driven()
+    return lambda: duhamel(struck, *parts, **travel)
 
 
 def stepped(
@@ -203,12 +181,10 @@ def stepped(
     progress: Progress = silent,
 ) -> Solve:
     """Step vehicle and road; the weight in a run of its own, since the road is the same everywhere."""
-    scenario, road = case.scenario, case.road(travels=travels)
-    assert scenario.vehicle is not None
-    assert scenario.road is not None
+    parts, _ = case.driven()
     return prepared(
         case.journey,
-        (road, scenario.vehicle, scenario.road.profile),
+        (case.road(travels=travels), *parts),
         iteration=iteration,
         superposed=superposed,
         run_in=RUN_IN,
@@ -234,17 +210,9 @@ def _sim(case: Case) -> Solve:
 
 def newmark(case: Case, *, travels: bool = False, progress: Progress = silent) -> Solve:
     """Step the road under prescribed loads."""
-    loads, journey, road = case.scenario.loads, case.journey, case.road(travels=travels)
-    assert loads is not None
-    return lambda: newmark_loads(
-        road,
-        case.forces(),
-        loads.positions,
-        speed=journey.speed,
-        time_step=journey.time_step,
-        observe=loads.observe,
-        progress=progress,
-    )
+    road = case.road(travels=travels)
+    given, how = case.loaded()
+    return lambda: newmark_loads(road, *given, progress=progress, **how)
 
 
 def _newmark_window(case: Case) -> Solve:

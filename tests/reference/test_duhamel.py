@@ -188,3 +188,25 @@ def test_refusals(more, message):
     options = {"force": np.ones((10, 1)), "positions": [0.0], "speed": 10.0} | more
     with pytest.raises(ValueError, match=message):
         mf.duhamel_loads(massless(), **options)
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_a_record_that_begins_on_a_bump(struck):
+    """Forces that act from t = 0 on enter the integral by half a hat: order 2 from the first step on."""
+    profile = mf.harmonic(amplitude=5e-3, wavelength=4.0, phase=0.9, length=40.0, start=-10.0)
+    steps, options = [4e-3, 2e-3, 1e-3], {"speed": 10.0, "duration": 0.064, "blend": 0.0}
+    found = {
+        step: mf.duhamel(struck, TRUCK, profile, time_step=step, **options) for step in (*steps, struck.time_step)
+    }
+    springs = np.array([contact.stiffness for contact in TRUCK.contacts])
+    dashpots = np.array([contact.damping for contact in TRUCK.contacts])
+    height = profile.along()(TRUCK.positions) - profile.along()(TRUCK.positions.max())
+    first = springs * height + dashpots * 10.0 * profile.along()(TRUCK.positions, 1)
+    np.testing.assert_allclose(found[1e-3].contact_force.values[0], first, rtol=1e-9)
+    fine = found[struck.time_step].deflection.values - found[struck.time_step].static_deflection.values
+    errors = []
+    for step in steps:
+        moving = found[step].deflection.values - found[step].static_deflection.values
+        errors.append(difference(moving[1:], fine[:: round(step / struck.time_step)][1:]))
+    order = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert order == pytest.approx(2.0, abs=0.3)
