@@ -309,7 +309,12 @@ FAULTS = [
     Fault(
         "acceleration at the start missing", "reference/moving_load.py", ".T @ forces[0])", ".T @ (0 * forces[0]))"
     ),
-    Fault("vehicle too stiff for the scheme", "reference/coupled.py", "highest**2 + own", "highest**2 + 0.0 * own"),
+    Fault(
+        "vehicle too stiff for the scheme",
+        "reference/requirements.py",
+        "highest**2 + own",
+        "highest**2 + 0.0 * own",
+    ),
     Fault("jump at the start of the record", "reference/coupled.py", "march.begun(", "(lambda *_: None)("),
     Fault(
         "Duhamel: jump at the start",

@@ -13,8 +13,9 @@ from movingfrf._checks import FloatArray, checking, require_memory
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.journey import Journey
 from movingfrf.progress import Progress, silent
-from movingfrf.reference.coupled import require_kinds, seen_in_time
+from movingfrf.reference.coupled import seen_in_time
 from movingfrf.reference.marching import STRIDE, Law, law_of, numba_is_there
+from movingfrf.reference.requirements import require_kinds
 from movingfrf.reference.schemes import SCHEMES
 from movingfrf.roughness.profiles import Profile
 from movingfrf.schema import COUPLED, LOADED, labelled

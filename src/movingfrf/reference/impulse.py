@@ -13,9 +13,9 @@ from movingfrf._checks import FloatArray, ValidityWarning, checking, require_mem
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import Track
 from movingfrf.progress import Progress, silent
-from movingfrf.reference.coupled import require_stable_scheme
 from movingfrf.reference.finite_guideway import FiniteGuideway, finite_track
 from movingfrf.reference.marching import March, no_vehicle
+from movingfrf.reference.requirements import require_stable_scheme
 from movingfrf.reference.schemes import Scheme, scheme_named
 
 # What is worth a word: what is left of the response at its end, of a wave that comes back from the ends of the road

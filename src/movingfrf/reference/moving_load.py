@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 
 from movingfrf._checks import FloatArray, checking, require_memory
 from movingfrf.progress import Progress, silent
-from movingfrf.reference.coupled import require_kinds, require_on_road, require_stable_scheme
 from movingfrf.reference.finite_guideway import FiniteGuideway
 from movingfrf.reference.marching import March, no_vehicle
+from movingfrf.reference.requirements import require_kinds, require_on_road, require_stable_scheme
 from movingfrf.reference.schemes import Scheme, scheme_named
 from movingfrf.schema import LOADED, labelled
 from movingfrf.version import VERSION
