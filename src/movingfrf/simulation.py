@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 import movingfrf.findings as find
 from movingfrf._checks import checking, require_memory
 from movingfrf.coupling import CHUNK, couple, joined, steady_state
-from movingfrf.guideways.base import Guideway
+from movingfrf.guideways.base import Guideway, require_guideway
 from movingfrf.journey import Journey
 from movingfrf.progress import Progress, silent
 from movingfrf.response import histories
@@ -112,6 +112,7 @@ def simulate(
     >>> dict(result.sizes)
     {'time': 2000, 'contact': 1, 'dof': 2}
     """
+    require_guideway(guideway)
     journey = Journey(
         speed=speed, duration=duration, start=start, time_step=time_step, truncation=truncation, blend=blend
     )
@@ -245,6 +246,7 @@ def moving_loads(
     >>> round(1e3 * result.deflection[-1, 0].item(), 3)  # mm
     3.737
     """
+    require_guideway(guideway)
     with checking() as check:
         at = check.array("positions", positions, "m", (None,))
         forces = check.array("force", force, "N", (None, at.size))

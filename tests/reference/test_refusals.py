@@ -149,6 +149,11 @@ def test_other_kinds_of_road():
         drive(TRACK, method=mf.duhamel)
     with pytest.raises(ValueError, match="road must be a FiniteGuideway"):
         mf.newmark_loads(TRACK, np.ones((10, 1)), [0.0], speed=1.0)
+    finite = mf.finite_track(TRACK, **STRETCH)
+    with pytest.raises(ValueError, match=r"guideway must have a moving FRF, .* got a FiniteGuideway"):
+        drive(finite, method=mf.simulate)
+    with pytest.raises(ValueError, match=r"guideway must have a moving FRF"):
+        mf.moving_loads(finite, np.ones((10, 1)), [0.0], speed=1.0)
     layered = mf.finite_track(DAMPED["rail_pad_sleeper_ballast"], first=-20.0, last=40.0)
     with pytest.raises(ValueError, match="compiled must be None or False"):
         drive(layered, compiled=True)

@@ -58,3 +58,23 @@ class Guideway(Protocol):
             Moving FRF [m/N], or [m/N/m^derivative].
         """
         ...
+
+
+def require_guideway(guideway: object) -> None:
+    """Refuse what has no moving FRF: a finite road, for one, which is not the same everywhere.
+
+    Parameters
+    ----------
+    guideway : object
+        What was given as a guideway.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+    """
+    if not hasattr(guideway, "moving_frf"):
+        raise ValueError(
+            f"guideway must have a moving FRF, as a track has, got a {type(guideway).__name__}; a finite road is "
+            "for cdfm, sim and newmark_loads, or struck with moving_impulse_response"
+        )
