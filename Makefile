@@ -6,12 +6,15 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 SCENARIO := out/demo.toml
 
-.PHONY: demo test bench accuracy faults lint format clean
+.PHONY: demo paper test bench accuracy faults lint format clean
 
 demo: $(READY)
 	@mkdir -p out
 	@$(BIN)/movingfrf new $(SCENARIO) --force
 	@$(BIN)/movingfrf run $(SCENARIO) --output out/demo
+
+paper: $(READY)
+	$(BIN)/movingfrf paper --output out/paper
 
 test: $(READY) lint
 	$(BIN)/pytest -q

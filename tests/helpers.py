@@ -99,6 +99,17 @@ HALF_TRUCK = {
     "tyre_damping": (3.9e3, 4.3e3),
     "axles": (0.519 * WHEELBASE, -0.481 * WHEELBASE),
 }
+# The same on four wheels, its centre of mass beside the middle of its axles.
+FULL_TRUCK = {
+    name: tuple(0.5 * value for value in HALF_TRUCK[name])
+    for name in ("wheel_masses", "suspension_stiffness", "suspension_damping", "tyre_stiffness", "tyre_damping")
+} | {
+    "body_mass": 17_735.0,
+    "pitch_inertia": 1.47e5,
+    "roll_inertia": 1.6e4,
+    "axles": HALF_TRUCK["axles"],
+    "sides": (0.85, -1.0),
+}
 QUARTER_CAR = {
     "body_mass": 400.0,
     "wheel_mass": 40.0,
@@ -158,6 +169,7 @@ VEHICLES: dict[str, mf.Vehicle] = {
     "quarter_car": mf.quarter_car(**QUARTER_CAR),
     "quarter_truck": mf.quarter_car(**QUARTER_TRUCK),
     "half_truck": mf.half_car(**HALF_TRUCK),
+    "full_truck": mf.full_car(**FULL_TRUCK),
     "three_axles": three_axle_truck(),
     "critically_damped_mass": lump(),
     "footprint": mf.quarter_car(**QUARTER_TRUCK, footprint=0.2),
@@ -165,11 +177,19 @@ VEHICLES: dict[str, mf.Vehicle] = {
 
 
 def rigid_motions(vehicle: mf.Vehicle) -> list[np.ndarray]:
-    """Motions that stretch no suspension: down by one metre, and nose down by one radian with all wheels."""
+    """Motions that stretch no suspension: down by one metre, nose and left side down by one radian with all wheels.
+
+    Motions of the body come first, then one wheel per contact: a wheel under the nose, or under the left side, goes
+    down by its lever arm.
+    """
     motions = [np.asarray(vehicle.vertical, float)]
-    if "pitch" in vehicle.dof_names:
-        # Bounce, pitch, then one wheel per contact: a wheel under the nose goes down by its lever arm.
-        motions.append(np.array([0.0, 1.0, *(contact.position for contact in vehicle.contacts)]))
+    body = len(vehicle.dof_names) - len(vehicle.contacts)
+    for name, levers in (
+        ("pitch", [contact.position for contact in vehicle.contacts]),
+        ("roll", [contact.across for contact in vehicle.contacts]),
+    ):
+        if name in vehicle.dof_names:
+            motions.append(np.array([*np.eye(body)[vehicle.dof_names.index(name)], *levers]))
     return motions
 
 

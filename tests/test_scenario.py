@@ -160,6 +160,87 @@ duration = 1.0
     assert result.static_load.item() == pytest.approx(900 * 9.81)
 
 
+FULL_CAR = """
+[vehicle]
+kind = "full_car"
+body_mass = 840.0
+pitch_inertia = 1100.0
+roll_inertia = 820.0
+wheel_masses = [53.0, 76.0]
+suspension_stiffness = [1.0e4, 1.3e4]
+suspension_damping = [900.0, 900.0]
+tyre_stiffness = [2.0e5, 2.0e5]
+axles = [1.4, -1.47]
+sides = [0.7, -0.75]
+
+"""
+
+
+def four_wheels(seeds, **changes):
+    """Write the template with a full car, and with seeds."""
+    text = edited(seed=seeds, duration=2.0, **changes)
+    return text[: text.index("[vehicle]")] + FULL_CAR.lstrip() + text[text.index("[roughness]") :]
+
+
+def test_a_full_car_and_a_seed_for_each_path():
+    """Two paths without anything in common, each the one of its seed; equal seeds make one road of both."""
+    scenario = parse_scenario(four_wheels("[0, 1]"))
+    assert scenario.vehicle.dof_names[:3] == ("bounce", "pitch", "roll")
+    profile = scenario.road.profile
+    assert profile.paths == 2
+    assert scenario.road.description.endswith("seed 0, 1")
+    for path, seed in enumerate((0, 1)):
+        alone = parse_scenario(four_wheels(f"[{seed}, {seed}]")).road.profile
+        assert (alone.elevation[:, 0] == alone.elevation[:, 1]).all()
+        assert (profile.elevation[:, path] == alone.elevation[:, 0]).all()
+    assert abs(np.corrcoef(profile.elevation.T)[0, 1]) < 0.3
+    # One seed in a list is one path, the same as without a list.
+    one, listed = (parse_scenario(edited(seed=seed)).road.profile for seed in ("1", "[1]"))
+    assert listed.paths == 1
+    assert (np.ravel(listed.elevation) == np.ravel(one.elevation)).all()
+    result = scenario.run()
+    direct = mf.simulate(
+        scenario.guideway, scenario.vehicle, profile, speed=10.0, duration=2.0, truncation=70.0
+    ).drop_attrs()
+    assert result.drop_attrs().identical(direct)
+    assert np.abs(result.motion.sel(dof="roll")).max() > 1e-5
+    same = parse_scenario(four_wheels("[1, 1]")).run()
+    assert np.abs(same.motion.sel(dof="roll")).max() < 0.1 * np.abs(result.motion.sel(dof="roll")).max()
+
+
+@pytest.mark.parametrize(
+    ("seeds", "name", "message"),
+    [
+        ("[]", "roughness.seed", "or a list of them, one per path, got an empty list"),
+        ("[0, -1]", "roughness.seed", "must be a whole number of at least 0, got -1"),
+        ("[0, 1.5]", "roughness.seed", "must be a whole number of at least 0, got 1.5"),
+        ('[0, "one"]', "roughness.seed", "must be a whole number"),
+        ("[[0, 1]]", "roughness.seed", "must be a whole number"),
+        ("true", "roughness.seed", "must be a whole number"),
+        ("0", "roughness:", "a contact follows path 1, but the profile has 1 path(s)"),
+        ("[4]", "roughness:", "a contact follows path 1, but the profile has 1 path(s)"),
+    ],
+)
+def test_impossible_seeds(seeds, name, message):
+    assert message in faults(four_wheels(seeds))[name]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "name", "message"),
+    [
+        ("roll_inertia = 820.0", "roll_inertia = 0", "vehicle.roll_inertia", "must be positive, got 0.0 kg m²"),
+        ("roll_inertia = 820.0\n", "", "vehicle.roll_inertia", "is missing"),
+        ("sides = [0.7, -0.75]", "sides = [-0.7, 0.75]", "vehicle.sides", "left wheels left of the right ones"),
+        ("sides = [0.7, -0.75]", "sides = [0.7, 0.7]", "vehicle.sides", "got [0.7, 0.7] m"),
+        ("sides = [0.7, -0.75]", "sides = 0.7", "vehicle.sides", "must be two numbers"),
+        ("axles = [1.4, -1.47]", "axles = [-1.4, 1.4]", "vehicle.axles", "front axle ahead of the rear one"),
+        ("axles = [1.4, -1.47]", "axles = [1.4, inf]", "vehicle.axles[1]", "must be a finite number"),
+    ],
+)
+def test_impossible_full_cars(old, new, name, message):
+    assert message in faults(four_wheels("[0, 1]").replace(old, new))[name]
+
+
 def test_all_faults_at_once():
     text = edited(mass=-1, stiffness="nan", speed=None, seed=1.5, axles="[1.0]", wheel_masses='"x"', band="[1.0]")
     found = faults(text.replace("duration", "durration").replace('"half_car"', '"half_car"\nmas = 1'))

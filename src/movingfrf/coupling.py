@@ -94,13 +94,7 @@ class System:
 
     def sample(self, omega: ComplexArray) -> Sample:
         """Evaluate both sides at some frequencies [rad/s]."""
-        contacts = self.vehicle.contacts
-        frf = self.guideway.moving_frf(
-            _offsets([contact.position for contact in contacts]),
-            self.speed,
-            omega,
-            across=_offsets([contact.across for contact in contacts]),
-        )
+        frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
         return Sample(omega, frf, self.vehicle.dynamic_stiffness(omega, self.modes))
 
     def samples(self, *omegas: ComplexArray) -> list[Sample]:
@@ -132,12 +126,6 @@ def joined(guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
         The two together.
     """
     return System(guideway, vehicle, speed, vehicle.modes())
-
-
-def _offsets(places: list[float]) -> FloatArray:
-    """Receiver minus source for every pair, shape (receiver, source) [m]."""
-    at = np.array(places)
-    return at[:, None] - at
 
 
 def solve_contacts(frf: ComplexArray, stiffness: ComplexArray, gap: ComplexArray) -> ComplexArray:
@@ -207,7 +195,8 @@ def couple(
 ) -> CoupledSpectra:
     """Couple guideway and vehicle over a rough road.
 
-    Up to the grid's truncation the contact force solves (I + D G) F = D R; beyond it the road is rigid, G = 0.
+    Up to the grid's truncation the contact force solves (I + D G) F = D R; beyond it the road stiffens until it is
+    rigid, G = 0.
     Either way the vehicle is then moved by d = G F − R and everything follows from d.
 
     Parameters
@@ -244,6 +233,7 @@ def couple(
         kept = max(min(last, grid.kept) - first, 0)
         if kept:
             _, frf, stiffness = system.sample(omega[:kept])
+            frf = frf * grid.compliance(slice(first, first + kept))[:, None, None]
             forces = solve_contacts(frf, stiffness, roughness[first : first + kept, :, None])
             deflection[first : first + kept] = product(frf, forces)[:, :, 0]
             displacement[:kept] += deflection[first : first + kept]

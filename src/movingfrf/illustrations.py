@@ -83,17 +83,36 @@ def blank(height: float) -> Figure:
     return Figure(figsize=(WIDTH, height), layout="constrained")
 
 
-def _svg(figure: Figure, key: str, label: str) -> str:
-    """Inline SVG of a figure, its ids made unique on the page by `key`."""
+def drawn_svg(figure: Figure, key: str) -> str:
+    """Draw a figure as SVG, a file of its own; equal figures and keys give equal text.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    key : str
+        Makes its ids.
+
+    Returns
+    -------
+    str
+        The file.
+    """
     import matplotlib
-    from markupsafe import Markup, escape
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     matplotlib.rcParams["svg.hashsalt"] = f"movingfrf {key}"
     written = io.StringIO()
     nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))
     FigureCanvasSVG(figure).print_svg(written, metadata=nothing)  # type: ignore[no-untyped-call]
-    svg = written.getvalue()
+    return written.getvalue()
+
+
+def _svg(figure: Figure, key: str, label: str) -> str:
+    """Inline SVG of a figure, its ids made unique on the page by `key`."""
+    from markupsafe import Markup, escape
+
+    svg = drawn_svg(figure, key)
     svg = svg[svg.index("<svg") :]
     # Only inside tags: text between them may say whatever it likes.
     svg = re.sub(r"<[^>]+>", lambda tag: re.sub(r'(\bid="|href="#|url\(#)', rf"\1{key}-", tag.group()), svg)

@@ -34,7 +34,7 @@ def replacing(folder: Path) -> Iterator[Path]:
     Yields
     ------
     Path
-        An empty folder to write into.
+        An empty folder to write into, also into folders within it.
 
     Raises
     ------
@@ -48,11 +48,15 @@ def replacing(folder: Path) -> Iterator[Path]:
         temporary = Path(tempfile.mkdtemp(prefix=".partial-", dir=folder))
         try:
             yield temporary
-            for file in sorted(temporary.iterdir()):
-                if (folder / file.name).is_dir():
-                    raise IsADirectoryError(errno.EISDIR, "is a folder", str(folder / file.name))
-            for file in sorted(temporary.iterdir()):
-                os.replace(file, folder / file.name)
+            written = {file: folder / file.relative_to(temporary) for file in sorted(temporary.rglob("*"))}
+            for file, target in written.items():
+                if target.exists() and target.is_dir() != file.is_dir():
+                    raise IsADirectoryError(errno.EISDIR, "is a folder, or should be", str(target))
+            for file, target in written.items():
+                if file.is_dir():
+                    target.mkdir(exist_ok=True)
+                else:
+                    os.replace(file, target)
             done = True
         finally:
             shutil.rmtree(temporary, ignore_errors=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib.resources import files
 from typing import NamedTuple
 
 from movingfrf.illustrations import Illustration
@@ -88,11 +87,8 @@ def page(
     str
         One HTML page without references to anything outside it. Equal input gives equal text.
     """
-    from jinja2 import Environment, StrictUndefined
-
-    template = files("movingfrf").joinpath("templates", "report.html.j2").read_text(encoding="utf-8")
-    environment = Environment(autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True)
-    return environment.from_string(template).render(
+    return rendered(
+        "report.html.j2",
         title=title,
         version=version,
         summary=summary,
@@ -105,3 +101,29 @@ def page(
         scenario=scenario,
         measures=measures,
     )
+
+
+def rendered(template: str, **values: object) -> str:
+    """Fill in one of the package's templates.
+
+    Parameters
+    ----------
+    template : str
+        Name of its file.
+    **values : object
+        What the template asks for.
+
+    Returns
+    -------
+    str
+        The page.
+    """
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("movingfrf", "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        keep_trailing_newline=True,
+    )
+    return environment.get_template(template).render(**values)

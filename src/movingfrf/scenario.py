@@ -31,7 +31,7 @@ from movingfrf.roughness.readers.columns import read_columns
 from movingfrf.roughness.spectra import IsoRoad, iso_class
 from movingfrf.simulation import moving_loads, require_record, simulate, spectral_grid
 from movingfrf.vehicles.base import Contact, Vehicle
-from movingfrf.vehicles.road import half_car, quarter_car
+from movingfrf.vehicles.road import full_car, half_car, quarter_car
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -161,10 +161,16 @@ def iso_road(
     waviness: float = 2.0,
     band: tuple[float, float] = (0.01, 10.0),
     step: float = 0.05,
-    seed: int = 0,
+    seed: int | Sequence[int] = 0,
 ) -> Road:
-    """Realise an ISO 8608 road, by class or by roughness, over the interval that the journey needs."""
+    """Realise an ISO 8608 road, by class or by roughness, over the interval that the journey needs.
+
+    A list of seeds gives one path each: equal seeds equal paths, different ones paths without anything in common.
+    """
+    seeds: list[Any] = list(seed) if isinstance(seed, (list, tuple)) else [seed]
     with checking() as check:
+        if not seeds:
+            check.refuse("seed", "must be a whole number, or a list of them, one per path, got an empty list")
         if (roughness is None) == (road_class is None):
             check.refuse("road_class", "or roughness is needed: a class, A to H, or a number [m³], not both")
     if road_class is not None:
@@ -173,10 +179,13 @@ def iso_road(
         assert roughness is not None
         spectrum = IsoRoad(roughness=roughness, waviness=waviness, band=band)
     first, last = interval
+    paths = [realise(spectrum, length=last - first, step=step, seed=number, start=first) for number in seeds]
+    elevation = np.stack([np.asarray(path.elevation) for path in paths], axis=1)
     return Road(
-        realise(spectrum, length=last - first, step=step, seed=seed, start=first),
+        paths[0] if len(paths) == 1 else Profile(paths[0].distance, elevation),
         f"ISO 8608 class {iso_class(spectrum.roughness)}, {spectrum.roughness:g} m³ at 0.1 cycle/m, waviness "
-        f"{waviness:g}, {spectrum.band[0]:g} to {spectrum.band[1]:g} cycle/m, seed {seed}",
+        f"{waviness:g}, {spectrum.band[0]:g} to {spectrum.band[1]:g} cycle/m, seed "
+        f"{', '.join(map(str, seeds))}",
     )
 
 
@@ -225,7 +234,7 @@ KINDS: dict[str, dict[str, Callable[..., Any]]] = {
     "guideway": {"track": track, "rigid_guideway": RigidGuideway},
     "beam": {"euler_bernoulli_beam": EulerBernoulliBeam, "timoshenko_beam": TimoshenkoBeam},
     "foundation": {"spring": Spring, "shear_layer": ShearLayer, "on_mass": OnMass},
-    "vehicle": {"half_car": half_car, "quarter_car": quarter_car, "vehicle": Vehicle},
+    "vehicle": {"half_car": half_car, "full_car": full_car, "quarter_car": quarter_car, "vehicle": Vehicle},
     "contact": {"contact": Contact},
     "roughness": {"iso_road": iso_road, "profile": profile, "harmonic": harmonic, "bump": bump},
     "journey": {"journey": Journey},

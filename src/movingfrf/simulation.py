@@ -74,8 +74,9 @@ def simulate(
     time_step : float
         Step in time [s].
     truncation : float, optional
-        Frequency beyond which the road counts as rigid [Hz]. None: the lowest one beyond which a rigid road
-        changes no output by more than 1e-6 (relative L2), found and recorded.
+        Frequency beyond which the road counts as rigid [Hz]; it stiffens over the next 5 %, since a sharp cut
+        would ring. None: the lowest one beyond which a rigid road changes no output by more than 1e-6 (relative
+        L2), found and recorded.
     blend : float
         Length over which the profile sets in [m]; 0 leaves it as it is.
     progress : callable
@@ -144,7 +145,7 @@ def simulate(
     if truncation is None:
         kept = first_negligible(part, roughness)
         grid = replace(grid, truncation=max(kept - 1, 0) / (grid.padded * time_step))
-    error = truncation_error(part, grid.kept)
+    error = truncation_error(part, grid.untouched)
 
     coupled = couple(system, roughness, grid=grid, progress=progress)
     progress("histories", 0.0)
@@ -215,7 +216,7 @@ def moving_loads(
     observe : array_like, shape (point,), optional
         Observation points in the same frame [m]; the loads' own by default.
     truncation : float, optional
-        Frequency beyond which the response is left out [Hz]; None leaves nothing out.
+        Frequency beyond which the response is left out [Hz], fading over the next 5 %; None leaves nothing out.
     progress : callable
         Called with the name of a stage and the fraction of it that is done.
 
@@ -265,12 +266,14 @@ def moving_loads(
     deflection = np.empty((points.size, grid.kept), complex).T
     for first in range(0, grid.kept, CHUNK):
         last = min(first + CHUNK, grid.kept)
-        frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(slice(first, last)))
+        some = slice(first, last)
+        frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(some))
+        frf = frf * grid.compliance(some)[:, None, None]
         deflection[first:last] = (frf @ spectra[first:last, :, None])[:, :, 0]
         progress("moving FRF", last / grid.kept)
     # Beyond the truncation every so-many-th frequency tells how much is left out.
-    stride = (grid.size - grid.kept) // SAMPLES_BEYOND + 1
-    beyond = np.arange(grid.kept, grid.size, stride)
+    stride = (grid.size - grid.untouched) // SAMPLES_BEYOND + 1
+    beyond = np.arange(grid.untouched, grid.size, stride)
     frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(beyond))
     left_out = stride * (np.abs((frf @ spectra[beyond][:, :, None])[:, :, 0]) ** 2).sum(axis=0)
     whole = (np.abs(deflection) ** 2).sum(axis=0) + left_out

@@ -21,6 +21,10 @@ WRAP_AROUND = 3e-5
 # slope to its typical curvature, at most the second share.
 SETTLE, TIMES_ITS_SCALE, FADE = 0.25, 12.0, 0.05
 
+# Share of the truncation over which the guideway stiffens beyond it. What a sharp cut discards would ring on and
+# on, and the window raises what comes late.
+STIFFENING = 0.05
+
 # Samples before the end of a record that tell how fast it varies.
 LATELY = 4096
 
@@ -53,7 +57,8 @@ class SpectralGrid:
     time_step : float
         Step of the record [s].
     truncation : float, optional
-        Frequency beyond which the guideway counts as rigid [Hz]; None keeps every frequency.
+        Frequency beyond which the guideway stiffens until, 5 % higher, it is rigid [Hz]; None keeps every
+        frequency.
     settling : float
         Time that the padding must leave, at least, for the response to die away [s].
 
@@ -96,12 +101,29 @@ class SpectralGrid:
         return self.padded // 2 + 1
 
     @property
+    def untouched(self) -> int:
+        """Number of frequencies, from zero to the truncation, at which the guideway is what it is."""
+        return self._below(1.0)
+
+    @property
     def kept(self) -> int:
-        """Number of frequencies, from zero, at which the guideway is solved for."""
+        """Number of frequencies, from zero, at which the guideway is solved for: those at which it is not rigid."""
+        return self._below(1.0 + STIFFENING)
+
+    def compliance(self, numbers: slice) -> FloatArray:
+        """Share of its compliance that the guideway has at some frequencies: 1 up to the truncation, then less."""
+        at = np.arange(*numbers.indices(self.size))
+        if self.truncation is None or not self.truncation:
+            return np.ones(at.size)
+        frequency = at / (self.padded * self.time_step)
+        return smooth_step((1.0 + STIFFENING - frequency / self.truncation) / STIFFENING)
+
+    def _below(self, share: float) -> int:
+        """Count frequencies from zero to so many times the truncation."""
         if self.truncation is None:
             return self.size
         # The half makes the count independent of the rounding of a multiple of the frequency step.
-        return min(self.size, int(self.truncation * self.padded * self.time_step + 0.5) + 1)
+        return min(self.size, int(share * self.truncation * self.padded * self.time_step + 0.5) + 1)
 
     @property
     def time(self) -> FloatArray:

@@ -33,7 +33,7 @@ class Influence(NamedTuple):
 def bands(grid: SpectralGrid) -> IntArray:
     """Give the number of the first frequency of each band; one band begins at the grid's truncation."""
     edges = np.geomspace(1, grid.size, BANDS + 1).astype(int)
-    starts = np.unique(np.r_[0, edges, min(grid.kept, grid.size - 1)])
+    starts = np.unique(np.r_[0, edges, min(grid.untouched, grid.size - 1)])
     return starts[starts < grid.size]
 
 

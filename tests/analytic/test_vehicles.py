@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import eigh
 
 import movingfrf as mf
-from tests.helpers import HALF_TRUCK, QUARTER_CAR, QUARTER_TRUCK, VEHICLES
+from tests.helpers import FULL_TRUCK, HALF_TRUCK, QUARTER_CAR, QUARTER_TRUCK, VEHICLES
 
 
 def textbook(parameters, omega):
@@ -88,6 +88,93 @@ def test_damped_poles_solve_the_equations_of_motion():
 
 def test_the_reference_vehicle_weighs_what_it_should():
     assert VEHICLES["half_truck"].static_loads.sum() == pytest.approx(9.81 * (17_735 + 1500 + 1000), rel=1e-12)
+
+
+def pair_of_masses(above, below, suspension, tyre):
+    """Squared natural frequencies of one mass above another on springs: ω⁴ m M − ω² (…) + k_s k_t = 0."""
+    product = above * below
+    half = 0.5 * (suspension * (above + below) + tyre * above) / product
+    root = np.sqrt(half**2 - suspension * tyre / product)
+    return half - root, half + root
+
+
+def test_full_car_natural_frequencies():
+    """Alike left and right, front and rear: bounce, pitch and roll are quarter cars of their own.
+
+    The body counts by M/4, I_p/(4 a²) and I_r/(4 b²) for each wheel. In the seventh motion opposite corners move
+    against each other, and only wheels move: ω² = (k_s + k_t)/m.
+    """
+    body, pitch, roll, wheel, suspension, tyre = 18e3, 1.5e5, 1.4e4, 700.0, 1.7e6, 2.1e6
+    a, b = 2.1, 0.9
+    car = mf.full_car(
+        body_mass=body,
+        pitch_inertia=pitch,
+        roll_inertia=roll,
+        wheel_masses=(wheel, wheel),
+        suspension_stiffness=(suspension, suspension),
+        suspension_damping=(0.0, 0.0),
+        tyre_stiffness=(tyre, tyre),
+        axles=(a, -a),
+        sides=(b, -b),
+    )
+    expected = [(suspension + tyre) / wheel]
+    for above in (body / 4, pitch / (4 * a**2), roll / (4 * b**2)):
+        expected += pair_of_masses(above, wheel, suspension, tyre)
+    np.testing.assert_allclose(
+        car.natural_frequencies, np.sqrt(np.sort(expected)) / (2 * np.pi), rtol=1e-9, atol=0.0
+    )
+
+
+def test_full_car_static_loads_of_a_mass_beside_the_middle():
+    """Levers share the weight between axles; from side to side axles share its moment by their stiffness in roll.
+
+    Suspension and tyre of a wheel are springs in series; their wheels' own weight is carried where it is.
+    """
+    (front, rear), (left, right) = FULL_TRUCK["axles"], FULL_TRUCK["sides"]
+    weight = 9.81 * FULL_TRUCK["body_mass"]
+    axles = weight * np.array([-rear, front]) / (front - rear)
+    springs = 1 / (1 / np.array(FULL_TRUCK["suspension_stiffness"]) + 1 / np.array(FULL_TRUCK["tyre_stiffness"]))
+    # The centre of mass lies left of the middle between the wheels, since right wheels are farther from it.
+    moment = -0.5 * (left + right) * weight
+    transferred = springs / springs.sum() * moment / (left - right)
+    wheels = 9.81 * np.array(FULL_TRUCK["wheel_masses"])
+    expected = np.stack([axles / 2 + transferred, axles / 2 - transferred], axis=1) + wheels[:, None]
+    truck = VEHICLES["full_truck"]
+    assert [name for name in truck.dof_names if name.endswith("wheel")] == [
+        "front_left_wheel",
+        "front_right_wheel",
+        "rear_left_wheel",
+        "rear_right_wheel",
+    ]
+    np.testing.assert_allclose(truck.static_loads, expected.ravel(), rtol=1e-10)
+    assert truck.static_loads[0] > truck.static_loads[1]
+
+
+def test_a_full_car_leans_away_from_the_wheel_that_is_lifted():
+    """The absolute facts of its signs; downward, nose down and left side down are positive.
+
+    Slowly, on a rigid road: 1 cm up under the left wheels lifts the body by its share and turns it left side up;
+    later under the front wheels, on both paths, nose up.
+    """
+    x = np.arange(-8.0, 40.0, 0.05)
+    share = np.clip((x - 2.5) / 3.0, 0, 1)
+    step = 0.01 * (10 * share**3 - 15 * share**4 + 6 * share**5)
+    left, both = (mf.Profile(x, np.stack([step, other], axis=1)) for other in (0 * x, step))
+    (front, rear), (on_left, on_right) = FULL_TRUCK["axles"], FULL_TRUCK["sides"]
+    options = {"speed": 0.8, "time_step": 5e-3, "blend": 0.0}
+    truck = VEHICLES["full_truck"]
+    result = mf.simulate(mf.RigidGuideway(), truck, left, duration=14.0, **options).isel(time=-600)
+    # A plane through 1 cm at the left wheels and nothing at the right ones.
+    motion = result.motion
+    assert float(motion.sel(dof="roll")) == pytest.approx(-0.01 / (on_left - on_right), rel=1e-3)
+    assert float(motion.sel(dof="bounce")) == pytest.approx(0.01 * on_right / (on_left - on_right), rel=1e-3)
+    assert float(motion.sel(dof="front_left_wheel")) == pytest.approx(-0.01, rel=1e-3)
+    assert abs(float(motion.sel(dof="front_right_wheel"))) < 1e-5
+    result = mf.simulate(mf.RigidGuideway(), truck, both, duration=14.0, **options)
+    between = result.isel(time=int(np.searchsorted(front + 0.8 * result.time.values, 6.1))).motion
+    assert float(between.sel(dof="pitch")) == pytest.approx(-0.01 / (front - rear), rel=1e-2)
+    # The body still bounces a little, and turns with it as its centre of mass lies beside the middle.
+    assert abs(float(between.sel(dof="roll"))) < 1e-5
 
 
 def test_footprint_averages_the_road():

@@ -44,9 +44,11 @@ def greatest_difference(first, second):
 
 
 def drive(vehicle="half_truck", road=ROAD, profile=None, *, speed=10.0, duration=3.0, **more):
-    return mf.simulate(
-        road, VEHICLES[vehicle], rough() if profile is None else profile, speed=speed, duration=duration, **more
-    )
+    profile = rough() if profile is None else profile
+    # A second path, where one is followed: another road, but one that is flat, shifted or scaled as the first is.
+    paths = 1 + max(contact.path for contact in VEHICLES[vehicle].contacts)
+    profile = mf.Profile(profile.distance, np.outer(profile.elevation, (-0.5) ** np.arange(paths)))
+    return mf.simulate(road, VEHICLES[vehicle], profile, speed=speed, duration=duration, **more)
 
 
 # (vehicle, road, speed): every vehicle on the reference road, every road under the half truck or a quarter truck.

@@ -14,6 +14,8 @@ import scipy.sparse as sparse
 import movingfrf as mf
 from tests.helpers import (
     DAMPED,
+    FULL_TRUCK,
+    HALF_TRUCK,
     MARGIN,
     PAVEMENT,
     QUARTER_TRUCK,
@@ -403,6 +405,48 @@ def test_three_axles_share_their_weight_as_the_road_gives_way(superposed):
     np.testing.assert_allclose(stepped.static_deflection, spectral.static_deflection, rtol=2e-4)
     # On the smooth road nothing else happens than the passage of elements.
     assert np.abs(stepped.contact_force).max() < 1e-4 * truck.static_loads.max()
+
+
+# Alike left and right.
+FOUR_WHEELS = mf.full_car(**(FULL_TRUCK | {"sides": (0.9, -0.9)}))
+
+
+@pytest.mark.filterwarnings("ignore:the vehicle's motion has not died away")
+@pytest.mark.parametrize("way", ["simulate", "cdfm", "sim"])
+def test_four_wheels_on_a_beam_are_two_axles(way):
+    """Equal paths: both sides share an axle's force, and nothing rolls. Opposite ones: the body rolls, no more.
+
+    A beam deflects alike under both sides, so that opposite forces leave it at rest. The same equations in another
+    order: rounding (1e-12).
+    """
+    methods = {
+        "simulate": lambda *who: mf.simulate(TRACK, *who, speed=10.0, duration=2.0, truncation=300.0),
+        "cdfm": lambda *who: mf.cdfm(travelling(0.25, 25.0, 15.0), *who, speed=10.0, duration=2.0, superposed=True),
+        "sim": lambda *who: mf.sim(travelling(0.25, 25.0, 15.0), *who, speed=10.0, duration=2.0, superposed=True),
+    }
+    stations, elevation = rough().distance, np.ravel(rough().elevation)
+    equal, opposite = (
+        methods[way](FOUR_WHEELS, mf.Profile(stations, np.stack([elevation, sign * elevation], axis=1)))
+        for sign in (1, -1)
+    )
+    axles = methods[way](mf.half_car(**HALF_TRUCK), rough())
+    within = 1e-9 if way != "sim" else 1e-8  # exchanged to 1e-10
+    force = equal.contact_force.values.reshape(-1, 2, 2)
+    assert difference(force.sum(axis=2), axles.contact_force) < within
+    assert np.abs(force[..., 0] - force[..., 1]).max() < within * np.abs(force).max()
+    for name in ("bounce", "pitch"):
+        for output in ("motion", "acceleration"):
+            assert difference(equal[output].sel(dof=name), axles[output].sel(dof=name)) < within
+    np.testing.assert_allclose(equal.deflection[:, ::2], axles.deflection, rtol=within)
+    np.testing.assert_allclose(equal.static_load.values.reshape(2, 2).sum(axis=1), axles.static_load, rtol=1e-9)
+    largest = {name: float(np.abs(opposite.motion.sel(dof=name)).max()) for name in ("bounce", "pitch", "roll")}
+    assert np.abs(equal.motion.sel(dof="roll")).max() < within * largest["roll"]
+    assert max(largest["bounce"], largest["pitch"]) < within * largest["roll"]
+    assert largest["roll"] > 1e-3
+    moving = (opposite.deflection - opposite.static_deflection).values
+    assert np.abs(moving).max() < within * np.abs(opposite.deflection).max()
+    force = opposite.contact_force.values
+    assert np.abs(force[:, ::2] + force[:, 1::2]).max() < within * np.abs(force).max()
 
 
 @pytest.mark.parametrize("compiled", [True, False], ids=["compiled", "plain"])

@@ -57,6 +57,43 @@ def test_negative_frequencies_are_conjugate():
     assert found[0] == pytest.approx(found[1].conj(), rel=1e-13)
 
 
+# On a road with a width: every size once, (ahead, across, source across) → size.
+PLACES = {(0.0, 0.0, 0.7): 1e-6, (0.0, -1.4, 0.7): 2e-6, (0.0, 1.4, -0.7): 3e-6, (2.5, 0.0, 0.7): 4e-6}
+WIDE = mf.SampledGuideway(
+    response=np.exp(-20.0 * TIME[:, None]) * list(PLACES.values()),
+    time_step=STEP,
+    offsets=[ahead for ahead, _, _ in PLACES],
+    across=[across for _, across, _ in PLACES],
+    source_across=[source for _, _, source in PLACES],
+    speed=10.0,
+)
+
+
+def test_places_across_choose_the_column():
+    """Offset along, offset across and place of the source together; places in any shape that broadcasts."""
+    unit = WIDE.moving_frf(0.0, 10.0, [5.0], across=0.0, source_across=0.7)[0] / PLACES[0.0, 0.0, 0.7]
+    for (ahead, across, source), size in PLACES.items():
+        found = WIDE.moving_frf(ahead, 10.0, [5.0], across=across, source_across=source)
+        assert found[0] == pytest.approx(size * unit, rel=1e-12)
+    table = WIDE.moving_frf(0.0, 10.0, [5.0], across=[[0.0], [-1.4]], source_across=[0.7, 0.7, 0.7])
+    assert table.shape == (1, 2, 3)
+    np.testing.assert_allclose(table[0], unit * np.outer([1e-6, 2e-6], np.ones(3)), rtol=1e-12)
+    # Where places across make no difference they only give the shape.
+    plain = ROAD.moving_frf(3.0, 10.0, [5.0], across=[0.5, -0.5], source_across=[[1.0], [9.0]])
+    assert plain.shape == (1, 2, 2)
+    assert (plain == ROAD.moving_frf(3.0, 10.0, [5.0])[0]).all()
+
+
+@pytest.mark.parametrize(
+    "asked", [(0.0, 0.0, 0.0), (2.5, -1.4, 0.7), (0.0, 0.0, -0.7), (0.0, 0.7, -1.4), (0.0, -1.399, 0.7)]
+)
+def test_places_that_were_not_recorded_together_are_refused(asked):
+    ahead, across, source = asked
+    message = rf"ahead, across, source_across must be one of .* \[\[0.0, 0.0, 0.7\], .* m, got {ahead}, {across}, "
+    with pytest.raises(ValueError, match=message):
+        WIDE.moving_frf([0.0, ahead], 10.0, [1.0], across=[-1.4, across], source_across=[0.7, source])
+
+
 @pytest.mark.parametrize(
     ("arguments", "more", "message"),
     [
@@ -95,6 +132,10 @@ GOOD = {"response": np.ones((5, 2)), "time_step": 1e-3, "offsets": [0.0, 1.0], "
         ({"time_step": -1e-3}, "time_step must be positive"),
         ({"speed": np.inf}, "speed must be a finite number"),
         ({"critical_speed": 0.0}, "critical_speed must be positive, got 0.0 m/s"),
+        ({"across": [0.0, 1.0]}, r"across and source_across must be given both or neither \[m\]"),
+        ({"source_across": [0.0, 1.0]}, "across and source_across must be given both or neither"),
+        ({"across": [0.0], "source_across": [0.0, 1.0]}, r"across must have shape \(2\), got \(1,\)"),
+        ({"across": [0.0, 1.0], "source_across": [0.0, np.nan]}, "source_across must be finite"),
     ],
 )
 def test_impossible_records(more, message):

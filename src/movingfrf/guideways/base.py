@@ -34,6 +34,7 @@ class Guideway(Protocol):
         omega: ArrayLike,
         *,
         across: ArrayLike = 0.0,
+        source_across: ArrayLike = 0.0,
         derivative: int = 0,
     ) -> ComplexArray:
         """Deflection per unit force between points that travel together.
@@ -48,7 +49,11 @@ class Guideway(Protocol):
             Angular frequency in the moving frame [rad/s]; may be complex with Im ω ≤ 0. On the real axis the
             value is the limit of ω − i0⁺.
         across : array_like, broadcastable to (*s)
-            Receiver minus source across the guideway [m].
+            Receiver minus source across the guideway [m], positive to the left.
+        source_across : array_like, broadcastable to (*s)
+            Where the source stands, left of the centre line [m]. Along a guideway nothing but the offset matters;
+            across it a road of finite width is not the same everywhere. Only asked of a guideway when a vehicle has
+            contacts beside the centre line.
         derivative : int
             Order of the derivative with respect to x: 0 deflection, 1 slope, 2 curvature.
 

@@ -32,7 +32,9 @@ class RigidGuideway:
         omega: ArrayLike,
         *,
         across: ArrayLike = 0.0,
+        source_across: ArrayLike = 0.0,
         derivative: int = 0,
     ) -> ComplexArray:
         """Zero for all offsets and frequencies [m/N]; see `Guideway.moving_frf` for the arguments."""
-        return np.zeros((np.size(omega), *np.broadcast_shapes(np.shape(ahead), np.shape(across))), complex)
+        shape = np.broadcast_shapes(np.shape(ahead), np.shape(across), np.shape(source_across))
+        return np.zeros((np.size(omega), *shape), complex)

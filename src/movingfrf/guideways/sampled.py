@@ -34,6 +34,9 @@ class SampledGuideway:
         Receiver minus source [m], positive ahead.
     speed : float
         The speed [m/s].
+    across, source_across : array_like, shape (offset,), optional
+        Of a road whose section does not move as one: receiver minus source across it, and where the source stands,
+        left of the centre line [m]. None: places across make no difference.
     critical_speed : float
         Critical speed of the guideway [m/s], where it is known; inf otherwise.
 
@@ -57,6 +60,8 @@ class SampledGuideway:
     time_step: float
     offsets: ArrayLike
     speed: float
+    across: ArrayLike | None = None
+    source_across: ArrayLike | None = None
     critical_speed: float = np.inf
 
     def __post_init__(self) -> None:
@@ -66,25 +71,35 @@ class SampledGuideway:
             response = check.array("response", self.response, "m/(N s)", (None, offsets.size))
             check.positive("time_step", self.time_step, "s")
             check.finite("speed", self.speed, "m/s")
+            if (self.across is None) != (self.source_across is None):
+                check.refuse("across", "and source_across must be given both or neither [m]")
+            beside = [
+                None if value is None else check.array(name, value, "m", (offsets.size,))
+                for name, value in (("across", self.across), ("source_across", self.source_across))
+            ]
             if not self.critical_speed > 0:
                 check.refuse("critical_speed", f"must be positive, got {self.critical_speed!r} m/s")
             if not check.faults and (len(response) < 2 or not offsets.size):
                 check.refuse("response", "must hold at least two samples and one offset")
         object.__setattr__(self, "offsets", offsets)
         object.__setattr__(self, "response", response)
+        object.__setattr__(self, "across", beside[0])
+        object.__setattr__(self, "source_across", beside[1])
 
     @property
     def samples(self) -> FloatArray:
         """The moving impulse response, shape (time, offset) [m/(N s)]."""
         return np.asarray(self.response)
 
-    def columns(self, ahead: ArrayLike) -> IntArray:
+    def columns(self, ahead: ArrayLike, across: ArrayLike = 0.0, source_across: ArrayLike = 0.0) -> IntArray:
         """Find the columns of `response` that belong to some offsets.
 
         Parameters
         ----------
         ahead : array_like, shape (*s)
             Offsets [m].
+        across, source_across : array_like, broadcastable to (*s)
+            Offsets across and places of the sources across [m]; where they make no difference they are ignored.
 
         Returns
         -------
@@ -96,12 +111,22 @@ class SampledGuideway:
         ValueError
             If an offset was not recorded.
         """
-        known, wanted = np.asarray(self.offsets), np.asarray(ahead, float)
-        nearest = np.abs(wanted[..., None] - known).argmin(axis=-1)
-        missing = np.abs(known[nearest] - wanted) > SAME_PLACE
+        places = np.broadcast_arrays(*(np.asarray(place, float) for place in (ahead, across, source_across)))
+        wide = () if self.across is None else (self.across, self.source_across)
+        known = [np.asarray(recorded, float) for recorded in (self.offsets, *wide)]
+        asked = len(known)
+        apart = np.max(
+            [np.abs(place[..., None] - recorded) for place, recorded in zip(places, known, strict=False)], axis=0
+        )
+        nearest = apart.argmin(axis=-1)
+        missing = apart.min(axis=-1) > SAME_PLACE
         if missing.any():
+            names = ("ahead", "across", "source_across")[:asked]
+            recorded = np.stack(known, axis=-1).squeeze(axis=-1 if asked == 1 else ()).tolist()
+            wanted = [float(place[missing][0]) for place in places[:asked]]
             raise ValueError(
-                f"ahead must be one of the recorded offsets {known.tolist()} m, got {float(wanted[missing][0])!r} m"
+                f"{', '.join(names)} must be one of the recorded offsets {recorded} m, got "
+                f"{', '.join(map(repr, wanted))} m"
             )
         return nearest
 
@@ -130,6 +155,7 @@ class SampledGuideway:
         omega: ArrayLike,
         *,
         across: ArrayLike = 0.0,
+        source_across: ArrayLike = 0.0,
         derivative: int = 0,
     ) -> ComplexArray:
         """Deflection per unit force between points that travel together: the transform of the impulse response.
@@ -143,8 +169,8 @@ class SampledGuideway:
         omega : array_like, shape (frequency,)
             Angular frequency in the moving frame [rad/s]; may be complex. Beyond half the sampling frequency the
             record says nothing and the guideway counts as rigid.
-        across : array_like
-            Ignored [m].
+        across, source_across : array_like
+            Receiver minus source across, and the source's place [m]; recorded ones only, if any were recorded.
         derivative : int
             Order of the derivative with respect to x: 0 only.
 
@@ -161,9 +187,9 @@ class SampledGuideway:
         self.require_speed(speed)
         if derivative:
             raise ValueError(f"derivative must be 0: the record holds deflections only, got {derivative!r}")
-        shape = np.broadcast_shapes(np.shape(ahead), np.shape(across))
-        chosen = self.columns(np.broadcast_to(np.asarray(ahead, float), shape).ravel())
-        distinct, back = np.unique(chosen, return_inverse=True)
+        chosen = self.columns(ahead, across, source_across)
+        shape = chosen.shape
+        distinct, back = np.unique(chosen.ravel(), return_inverse=True)
         frequencies = np.atleast_1d(np.asarray(omega, complex))
         frf = np.zeros((frequencies.size, distinct.size), complex)
         within = np.flatnonzero(np.abs(frequencies.real) <= np.pi / self.time_step)

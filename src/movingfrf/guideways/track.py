@@ -277,6 +277,7 @@ class Track:
         omega: ArrayLike,
         *,
         across: ArrayLike = 0.0,
+        source_across: ArrayLike = 0.0,
         derivative: int = 0,
     ) -> ComplexArray:
         """Deflection per unit force between points that travel together.
@@ -291,7 +292,7 @@ class Track:
             Common speed of source and receiver [m/s].
         omega : array_like, shape (frequency,)
             Angular frequency in the moving frame [rad/s]; may be complex with Im ω ≤ 0.
-        across : array_like
+        across, source_across : array_like
             Ignored: the section of a beam moves as one [m].
         derivative : int
             Order of the derivative with respect to x; 2 is the curvature.
@@ -316,7 +317,7 @@ class Track:
         >>> abs(road.moving_frf([0.0, 4.0, -4.0], 10.0, [0.0])).round(11)
         array([[3.737e-08, 3.600e-10, 0.000e+00]])
         """
-        shape = np.broadcast_shapes(np.shape(ahead), np.shape(across))
+        shape = np.broadcast_shapes(np.shape(ahead), np.shape(across), np.shape(source_across))
         with checking() as check:
             offsets = check.array("ahead", np.broadcast_to(np.asarray(ahead), shape).ravel(), "m", (None,))
             speed = check.finite("speed", speed, "m/s")

@@ -16,6 +16,7 @@ from movingfrf.progress import Progress, silent
 from movingfrf.reference.finite_guideway import FiniteGuideway
 from movingfrf.reference.marching import SOLVED, Iteration, March, State, law_of, no_vehicle
 from movingfrf.reference.requirements import (
+    require_across,
     require_apart,
     require_kinds,
     require_on_road,
@@ -103,8 +104,8 @@ def cdfm(
         Time for which the vehicle's weight travels along the smooth road before the record begins [s], from a road
         at rest under it; 0 begins with that state.
     observe : array_like, shape (place,)
-        Points of the road, standing still, whose deflection is recorded too [m]: mid-span of a bridge. Not with
-        `superposed`, whose steady part is known under the contacts only.
+        Points of the road's centre line, standing still, whose deflection is recorded too [m]: mid-span of a
+        bridge. Not with `superposed`, whose steady part is known under the contacts only.
     scheme : str or Scheme
         Time-stepping scheme, by name or as the row of its numbers.
     compiled : bool, optional
@@ -306,6 +307,7 @@ def prepared(
         before, after = -journey.speed * run_in, journey.speed * journey.time_step * journey.samples
         # A road that travels along follows element by element.
         require_on_road(check, road, positions, (0.0, road.spacing) if road.travels else (before, after))
+        require_across(check, road, vehicle.across)
         require_apart(check, road, positions)
         if any(contact.damping for contact in vehicle.contacts):
             require_slopes(check, road)
@@ -318,6 +320,7 @@ def prepared(
         time_step=journey.time_step,
         speed=journey.speed,
         contacts=positions,
+        contacts_across=vehicle.across,
         observers=places,
         observers_travel=False,
         law=law_of(vehicle),
@@ -459,7 +462,7 @@ def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress
     held = vehicle.dynamic_stiffness(np.zeros(1, complex), None)[0].real
     held = np.where(np.abs(held) < ROUNDING * np.abs(march.law.springs).max(), 0.0, held)
     sags = _sags(march, -steps)
-    yields = march.road.rows(march.places(-steps)) @ sags
+    yields = march.road.rows(march.places(-steps), 0, march.contacts_across) @ sags
     load = np.linalg.solve(np.eye(len(held)) + held @ yields, vehicle.static_loads)
     deflection = yields @ load
     alone = replace(march, law=no_vehicle(march.contacts.size), iteration=SOLVED, observers=np.empty(0))
@@ -509,7 +512,7 @@ def _sags(march: March, step: int) -> FloatArray:
         factor = splu(march.road.stiffness)
     except RuntimeError:
         raise SolveError("the road's stiffness matrix is singular: nothing holds the road up at rest") from None
-    return factor.solve(march.road.rows(march.places(step)).toarray().T)
+    return factor.solve(march.road.rows(march.places(step), 0, march.contacts_across).toarray().T)
 
 
 def _passage(march: March, most: int) -> int:

@@ -94,13 +94,13 @@ def duhamel(
         require_kinds(check, road=(road, SampledGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile))
     road.require_speed(speed)
     positions = vehicle.positions
-    columns = road.columns(positions[:, None] - positions)
+    columns = road.columns(**vehicle.offsets)
     whole, _, earlier = weights(road, time_step)
     channels = 5 * positions.size + 2 * len(vehicle.dof_names)
     require_memory(8.0 * channels * journey.samples, f"{journey.samples} steps of {time_step:g} s")
     excitation = seen_in_time(profile, vehicle, journey)
     assert excitation.rate is not None
-    yields = road.moving_frf(positions[:, None] - positions, speed, [0.0])[0].real
+    yields = road.moving_frf(speed=speed, omega=[0.0], **vehicle.offsets)[0].real
     held = vehicle.dynamic_stiffness(np.zeros(1, complex), None)[0].real
     load = np.linalg.solve(np.eye(positions.size) + held @ yields, vehicle.static_loads)
     steady = yields @ load

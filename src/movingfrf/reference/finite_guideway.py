@@ -16,7 +16,8 @@ from movingfrf.guideways.track import EulerBernoulliBeam, Foundation, OnMass, Sh
 from movingfrf.reference.factors import is_definite
 from movingfrf.smooth import smooth_step
 
-# Positions [m] and order of the derivative → one row per position, shape (position, dof).
+# Positions [m], order of the derivative and, on a road with a width, places across [m] → one row per position,
+# shape (position, dof).
 Interpolation = Callable[..., Any]
 
 # Ends of a finite road → which of deflection and slope they hold.
@@ -77,15 +78,21 @@ class FiniteGuideway:
         Symmetric matrices [kg, N s/m, N/m; rotations in rad]; mass positive definite, the others semidefinite.
     interpolation : callable
         Called with positions [m], shape (position,), and the order of the derivative along the road (0, or 1
-        where a contact has damping); returns the rows N, shape (position, dof), sparse or not [m/m or 1/m].
+        where a contact has damping), and on a road with a width with places across as well, left of the centre
+        line [m], shape (position,); returns the rows N, shape (position, dof), sparse or not [m/m or 1/m].
     interval : tuple of float
         First and last position that may be loaded [m].
     spacing : float
         Distance between nodes along the road [m]; contacts closer than that cannot be told apart.
+    width : float
+        Width of a road whose section does not move as one [m]; 0: places across make no difference.
     mesh : Mesh, optional
         Set by `finite_track`: what the compiled solvers need.
     travels : bool
-        Set by `finite_track`: whether positions are those seen from the vehicle, which the road accompanies.
+        Set by `finite_track` and `finite_plate`: whether positions are those seen from the vehicle, which the road
+        accompanies.
+    column : int
+        Set by the same: unknowns per element along the road, by which the state of a road that travels moves back.
 
     Raises
     ------
@@ -110,8 +117,10 @@ class FiniteGuideway:
     interpolation: Interpolation
     interval: tuple[float, float]
     spacing: float = 0.0
+    width: float = 0.0
     mesh: Mesh | None = None
     travels: bool = False
+    column: int = 0
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -122,6 +131,9 @@ class FiniteGuideway:
             if not check.faults and not first < last:
                 check.refuse("interval", f"must begin before it ends, got {first!r} m to {last!r} m")
             check.not_negative("spacing", self.spacing, "m")
+            check.not_negative("width", self.width, "m")
+            if self.travels and not self.column > 0:
+                check.refuse("column", f"must be positive on a road that travels, got {self.column!r}")
             if not check.faults:
                 shapes = {matrix.shape for matrix in (self.mass, self.damping, self.stiffness)}
                 if len(shapes) > 1:
@@ -142,9 +154,21 @@ class FiniteGuideway:
         """Number of unknowns."""
         return int(self.mass.shape[0])
 
-    def rows(self, positions: FloatArray, derivative: int = 0) -> sparse.csr_array:
-        """Rows that interpolate the deflection, or its slope, at some positions [m], shape (position, dof)."""
-        return sparse.csr_array(self.interpolation(np.asarray(positions, float), derivative))
+    def rows(self, positions: FloatArray, derivative: int = 0, across: ArrayLike = 0.0) -> sparse.csr_array:
+        """Rows that interpolate the deflection, or its slope along the road, shape (position, dof).
+
+        Parameters
+        ----------
+        positions : ndarray, shape (position,)
+            Positions along the road [m].
+        derivative : int
+            Order of the derivative along the road.
+        across : array_like, broadcastable to (position,)
+            Places left of the centre line [m]; without meaning on a road without a width.
+        """
+        at = np.asarray(positions, float)
+        beside = (np.broadcast_to(np.asarray(across, float), at.shape),) if self.width else ()
+        return sparse.csr_array(self.interpolation(at, derivative, *beside))
 
 
 def _symmetric(check: Checks, name: str, given: Any, unit: str) -> sparse.csc_array:
@@ -295,55 +319,20 @@ def finite_track(
     with checking() as check:
         if not isinstance(track, Track) or not isinstance(track.beam, EulerBernoulliBeam):
             check.refuse("track", f"must have an Euler–Bernoulli beam to be cut into elements, got {shown(track)}")
-        first, last = check.finite("first", first, "m"), check.finite("last", last, "m")
-        check.positive("element", element, "m")
-        usual = min(ABSORBING, max(last - first, 0.0) / 3)
-        length = check.not_negative("absorbing", usual if absorbing is None else absorbing, "m")
+        both, length = require_stretch(check, (first, last), element, ends, absorbing, travels)
         check.not_negative("band", band, "Hz")
-        both = (ends, ends) if isinstance(ends, str) else tuple(ends)
-        if len(both) != 2 or not all(isinstance(end, str) and end in ENDS for end in both):
-            check.refuse("ends", f"must be one or two of {', '.join(ENDS)}, got {shown(ends)}")
-        if travels and not set(both) <= FOLLOWING:
-            check.refuse(
-                "ends",
-                f"of a road that travels along must be among {', '.join(sorted(FOLLOWING))}, so that what joins "
-                f"and leaves it is at rest, got {shown(ends)}",
-            )
-        if not check.faults and "absorbing" in both and length > 0.5 * (last - first):
-            check.refuse(
-                "absorbing",
-                f"must be at most half of the stretch, {0.5 * (last - first):.6g} m, got {length!r} m",
-            )
-        if not check.faults and last - first < 4 * element:
-            check.refuse("last", f"must lie four elements of {element:g} m or more behind first, got {last!r} m")
     assert isinstance(track.beam, EulerBernoulliBeam)
     layers = _layers(track)
     with checking() as check:
-        bending = track.beam.bending_stiffness
-        bends_over = bending_length(track)
-        wavenumber = (
-            max(track.beam.mass * (2 * np.pi * band) ** 2 - layers.stiffness[0, 0], 0.0) / bending
-        ) ** 0.25
-        wave = 2 * np.pi / wavenumber if wavenumber else np.inf
-        if element > bends_over:
-            check.refuse(
-                "element",
-                f"must be at most {bends_over:.4g} m, the length (4 EI/k)^¼ over which this track bends under a "
-                f"load at rest, got {element!r} m",
-            )
-        elif element * PER_WAVE > wave:
-            check.refuse(
-                "element",
-                f"must be at most {wave / PER_WAVE:.4g} m, {PER_WAVE} to the wave of {wave:.4g} m that runs along "
-                f"this track at {band:g} Hz, got {element!r} m",
-            )
+        require_fine(check, track, element, band)
     count = int(np.ceil((last - first) / element - SAME_PLACE))
     element = (last - first) / count
     integrals = [_assembled(element, count, order) for order in range(3)]
     node = np.zeros(len(layers.masses))
     node[0] = 1.0
     beam_only = sparse.diags_array(node)
-    dashpots = _absorption(count, element, both, length, layers)
+    middles = first + element * (np.arange(count) + 0.5)
+    dashpots = absorption(track, (first, last), both, length, middles)
     mass = sparse.kron(integrals[0], sparse.diags_array(layers.masses))
     stiffness = (
         sparse.kron(track.beam.bending_stiffness * integrals[2], beam_only)
@@ -374,7 +363,123 @@ def finite_track(
         spacing=element,
         mesh=mesh,
         travels=travels,
+        column=2 * len(layers.masses),
     )
+
+
+def require_stretch(
+    check: Checks,
+    interval: tuple[float, float],
+    element: float,
+    ends: str | tuple[str, str],
+    absorbing: float | None,
+    travels: bool,
+) -> tuple[tuple[str, str], float]:
+    """Check where a stretch begins and ends, and how.
+
+    Parameters
+    ----------
+    check : Checks
+        Collects the faults.
+    interval : tuple of float
+        First and last position [m].
+    element : float
+        Length of an element [m].
+    ends, absorbing, travels
+        As for `finite_track`.
+
+    Returns
+    -------
+    ends : tuple of str
+        One for each end.
+    absorbing : float
+        Length of the absorbing stretches [m].
+    """
+    first, last = check.finite("first", interval[0], "m"), check.finite("last", interval[1], "m")
+    check.positive("element", element, "m")
+    usual = min(ABSORBING, max(last - first, 0.0) / 3)
+    length = check.not_negative("absorbing", usual if absorbing is None else absorbing, "m")
+    both = (ends, ends) if isinstance(ends, str) else tuple(ends)
+    if len(both) != 2 or not all(isinstance(end, str) and end in ENDS for end in both):
+        check.refuse("ends", f"must be one or two of {', '.join(ENDS)}, got {shown(ends)}")
+    if travels and not set(both) <= FOLLOWING:
+        check.refuse(
+            "ends",
+            f"of a road that travels along must be among {', '.join(sorted(FOLLOWING))}, so that what joins and "
+            f"leaves it is at rest, got {shown(ends)}",
+        )
+    if not check.faults and "absorbing" in both and length > 0.5 * (last - first):
+        check.refuse(
+            "absorbing", f"must be at most half of the stretch, {0.5 * (last - first):.6g} m, got {length!r} m"
+        )
+    if not check.faults and last - first < 4 * element:
+        check.refuse("last", f"must lie four elements of {element:g} m or more behind first, got {last!r} m")
+    return both, length  # type: ignore[return-value]
+
+
+def require_fine(check: Checks, track: Track, element: float, band: float) -> None:
+    """Refuse elements too long to bend as the track does.
+
+    Parameters
+    ----------
+    check : Checks
+        Collects the fault.
+    track : Track
+        The track.
+    element : float
+        Length of an element [m].
+    band : float
+        Highest frequency whose waves the elements shall resolve [Hz].
+    """
+    assert isinstance(track.beam, EulerBernoulliBeam)
+    bends_over = bending_length(track)
+    inertia = track.beam.mass * (2 * np.pi * band) ** 2 - _layers(track).stiffness[0, 0]
+    wavenumber = (max(inertia, 0.0) / track.beam.bending_stiffness) ** 0.25
+    wave = 2 * np.pi / wavenumber if wavenumber else np.inf
+    if element > bends_over:
+        check.refuse(
+            "element",
+            f"must be at most {bends_over:.4g} m, the length (4 EI/k)^¼ over which this track bends under a load "
+            f"at rest, got {element!r} m",
+        )
+    elif element * PER_WAVE > wave:
+        check.refuse(
+            "element",
+            f"must be at most {wave / PER_WAVE:.4g} m, {PER_WAVE} to the wave of {wave:.4g} m that runs along this "
+            f"track at {band:g} Hz, got {element!r} m",
+        )
+
+
+def absorption(
+    track: Track, interval: tuple[float, float], ends: tuple[str, str], length: float, positions: FloatArray
+) -> FloatArray:
+    """Damping that absorbing ends add to a track's own.
+
+    Parameters
+    ----------
+    track : Track
+        The track.
+    interval : tuple of float
+        Where the stretch begins and ends [m].
+    ends : tuple of str
+        How.
+    length : float
+        Length of an absorbing stretch [m].
+    positions : ndarray
+        Where it is asked for [m].
+
+    Returns
+    -------
+    ndarray
+        Damping per length of the whole width [N s/m²], shape of `positions`.
+    """
+    layers = _layers(track)
+    strength = ABSORPTION * 2 * np.sqrt(layers.support * layers.masses.sum())
+    damping = np.zeros_like(positions)
+    for end, distance in zip(ends, (positions - interval[0], interval[1] - positions), strict=True):
+        if end == "absorbing" and length:
+            damping += strength * smooth_step(1.0 - distance / length)
+    return damping
 
 
 def bending_length(track: Track) -> float:
@@ -426,17 +531,6 @@ def _layers(track: Track) -> _Layers:
         tables += np.multiply.outer([spring.stiffness, spring.damping, shear], np.outer(stretch, stretch))
     support = 1 / sum(1 / spring.stiffness for spring in springs)
     return _Layers(np.array(masses), tables[0], tables[1], tables[2], support)
-
-
-def _absorption(count: int, element: float, ends: tuple[str, ...], length: float, layers: _Layers) -> FloatArray:
-    """Additional damping of each element [N s/m²]."""
-    middle = element * (np.arange(count) + 0.5)
-    strength = ABSORPTION * 2 * np.sqrt(layers.support * layers.masses.sum())
-    damping = np.zeros(count)
-    for end, distance in zip(ends, (middle, count * element - middle), strict=True):
-        if end == "absorbing" and length:
-            damping += strength * smooth_step(1.0 - distance / length)
-    return damping
 
 
 def _assembled(element: float, count: int, order: int, factor: ArrayLike = 1.0) -> sparse.csr_array:

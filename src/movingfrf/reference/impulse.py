@@ -15,7 +15,7 @@ from movingfrf.guideways.track import Track
 from movingfrf.progress import Progress, silent
 from movingfrf.reference.finite_guideway import FiniteGuideway, finite_track
 from movingfrf.reference.marching import March, no_vehicle
-from movingfrf.reference.requirements import require_stable_scheme
+from movingfrf.reference.requirements import require_across, require_stable_scheme
 from movingfrf.reference.schemes import Scheme, scheme_named
 
 # What is worth a word: what is left of the response at its end, of a wave that comes back from the ends of the road
@@ -60,6 +60,8 @@ def moving_impulse_response(
     speed: float,
     offsets: ArrayLike,
     strike: float,
+    across: ArrayLike = 0.0,
+    strike_across: ArrayLike = 0.0,
     duration: float | None = None,
     time_step: float = 2.5e-4,
     band: float = 70.0,
@@ -84,6 +86,9 @@ def moving_impulse_response(
         Where the points start, ahead of the impulse [m].
     strike : float
         Where the impulse strikes [m]; at a node a mesh is most accurate.
+    across, strike_across : array_like, broadcastable to (offset,)
+        On a road with a width: place of each point across, less that of the impulse, and the impulse's own, left of
+        the centre line [m]. The road is struck once at each place.
     duration : float, optional
         Length of the record [s]; None: until it has died away, as long as every point stays on the road and at
         most 4 s.
@@ -131,6 +136,10 @@ def moving_impulse_response(
     several = [roads] if isinstance(roads, FiniteGuideway) else list(roads)
     with checking() as check:
         at = check.array("offsets", offsets, "m", (None,))
+        beside, sources = (
+            check.array(name, np.full(at.shape, value) if np.ndim(value) == 0 else value, "m", at.shape)
+            for name, value in (("across", across), ("strike_across", strike_across))
+        )
         for name, value, unit in (("speed", speed, "m/s"), ("strike", strike, "m")):
             check.finite(name, value, unit)
         check.positive("time_step", time_step, "s")
@@ -149,6 +158,7 @@ def moving_impulse_response(
     first, last = max(road.interval[0] for road in several), min(road.interval[1] for road in several)
     starts = strike + np.append(at, 0.0)
     room = (last - starts.max() if speed > 0 else starts.min() - first) / abs(speed) if speed else np.inf
+    wide = any(road.width for road in several)
     with checking() as check:
         length = min(room, LONGEST) if duration is None else duration
         if starts.min() < first or starts.max() > last or length > room * (1 + 1e-9) or length < 2 * time_step:
@@ -158,30 +168,44 @@ def moving_impulse_response(
                 f"{speed:g} m/s stay on the road, {first:.6g} m to {last:.6g} m, for {max(room, 0.0):.4g} s"
                 + ("" if duration is None else f", not for the duration of {duration:g} s"),
             )
+        if not wide and (beside.any() or sources.any()):
+            check.refuse("across", "and strike_across must be 0 m on a road whose section moves as one")
         for road in several:
+            require_across(check, road, np.concatenate([sources, sources + beside]))
             require_stable_scheme(check, road, row, time_step)
     steps = int(length / time_step * (1 + 1e-12))
     require_memory(
         32.0 * steps * at.size * len(several), f"an impulse response of {length:g} s in steps of {time_step:g} s"
     )
-    records: list[FloatArray] = []
-    for road in several:
-        # What the first road has forgotten the others need not remember.
-        fading = FADED if duration is None and not records else 0.0
-        records.append(
-            _ringing(road, row, time_step, speed, strike, strike + at, steps, compiled, progress, fading=fading)
-        )
-        steps = len(records[0]) - 1
-    response = np.mean(records, axis=0)
+    pieces: dict[float, FloatArray] = {}
+    for source in np.unique(sources).tolist():
+        seen = sources == source
+        blow = Blow(strike, source, speed, strike + at[seen], (sources + beside)[seen])
+        records: list[FloatArray] = []
+        for road in several:
+            # What the first road has forgotten the others need not remember.
+            fading = FADED if duration is None and not pieces and not records else 0.0
+            records.append(_ringing(road, row, time_step, blow, steps, compiled, progress, fading=fading))
+            steps = len(records[0]) - 1
+        pieces[source] = np.mean(records, axis=0)
+    response = np.empty((steps + 1, at.size))
+    for source, piece in pieces.items():
+        response[:, sources == source] = piece
     found = [
         *_undecayed(response, steps * time_step),
         *_stretched(band, time_step),
-        *_reflected(several, row, time_step, strike, steps, band, compiled, progress),
+        *_reflected(several, row, time_step, (strike, float(sources[0])), steps, band, compiled, progress),
     ]
     for message in found:
         warnings.warn(message, ValidityWarning, stacklevel=2)
     return SampledGuideway(
-        response=response, time_step=time_step, offsets=at, speed=float(speed), critical_speed=critical_speed
+        response=response,
+        time_step=time_step,
+        offsets=at,
+        speed=float(speed),
+        across=beside if wide else None,
+        source_across=sources if wide else None,
+        critical_speed=critical_speed,
     )
 
 
@@ -253,13 +277,21 @@ def struck_track(
     )
 
 
+class Blow(NamedTuple):
+    """Where the road is struck, and the points that travel on from there and watch."""
+
+    at: float  # [m]
+    across: float  # [m]
+    speed: float  # [m/s]
+    points: FloatArray  # (point,) [m]
+    points_across: ArrayLike  # (point,) [m]
+
+
 def _ringing(
     road: FiniteGuideway,
     scheme: Scheme,
     time_step: float,
-    speed: float,
-    strike: float,
-    points: FloatArray,
+    blow: Blow,
     steps: int,
     compiled: bool | None,
     progress: Progress,
@@ -271,17 +303,18 @@ def _ringing(
         road=road,
         scheme=scheme,
         time_step=time_step,
-        speed=speed,
+        speed=blow.speed,
         contacts=np.empty(0),
-        observers=points,
+        observers=blow.points,
+        observers_across=blow.points_across,
         law=no_vehicle(0),
         compiled=compiled,
     )
     state = march.at_rest()
-    state.road[1] = march.mass_solver.solve(road.rows(np.array([strike])).toarray()[0])
+    state.road[1] = march.mass_solver.solve(road.rows(np.array([blow.at]), 0, blow.across).toarray()[0])
     march.released(state, np.zeros(road.dofs))
     stretch = max(int(STRETCH / time_step), 1)
-    pieces: list[FloatArray] = [np.zeros((1, points.size))]
+    pieces: list[FloatArray] = [np.zeros((1, blow.points.size))]
     done, largest = 0, 0.0
     while done < steps:
         count = min(stretch, steps - done)
@@ -330,7 +363,7 @@ def _reflected(
     roads: Sequence[FiniteGuideway],
     scheme: Scheme,
     time_step: float,
-    strike: float,
+    struck: tuple[float, float],
     steps: int,
     band: float,
     compiled: bool | None,
@@ -347,9 +380,11 @@ def _reflected(
     first, last = road.interval
     outer = OUTER * (last - first)
     ends = np.concatenate([np.linspace(first, first + outer, POINTS), np.linspace(last - outer, last, POINTS)])
+    strike, across = struck
     middles = 0.5 * (strike + np.array([first, last]))
     points = np.concatenate([[strike], middles, ends])
-    records = _ringing(road, scheme, time_step, 0.0, strike, points, steps, compiled, progress)
+    blow = Blow(strike, across, 0.0, points, across)
+    records = _ringing(road, scheme, time_step, blow, steps, compiled, progress)
     numbers = np.arange(float(points.size))
     omega = 2 * np.pi * np.linspace(0.0, band, FREQUENCIES)
     at_rest = SampledGuideway(response=records, time_step=time_step, offsets=numbers, speed=0.0)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sparse
+from numpy.typing import ArrayLike
 
 from movingfrf._checks import FloatArray, IntArray, SolveError
 from movingfrf.progress import Progress, silent
@@ -120,6 +121,8 @@ class March:
         Whether to use the compiled loops; None: where they apply and numba is installed.
     observers_travel : bool
         Whether observers travel with the contacts or stand still.
+    contacts_across, observers_across : array_like
+        Where they stand left of the centre line [m].
     """
 
     road: FiniteGuideway
@@ -132,6 +135,8 @@ class March:
     iteration: Iteration = SOLVED
     compiled: bool | None = None
     observers_travel: bool = True
+    contacts_across: ArrayLike = 0.0
+    observers_across: ArrayLike = 0.0
 
     def at_rest(self, step: int = 0) -> State:
         """Everything at zero, at a step of the journey."""
@@ -167,10 +172,10 @@ class March:
         law, road = self.law, self.road
         (u, v, _), (z, dz, _) = state.road, state.body
         at = self._places(self.contacts, step, state)
-        rows = road.rows(at)
+        rows = road.rows(at, 0, self.contacts_across)
         force = law.springs * (law.contact_map @ z - rows @ u + roughness)
         if law.dashpots.any():
-            sinking = rows @ v + self.speed * (road.rows(at, 1) @ u)
+            sinking = rows @ v + self.speed * (road.rows(at, 1, self.contacts_across) @ u)
             force += law.dashpots * (law.contact_map @ dz - sinking + rate)
         state.acting[:] = force + load
         state.body[2] = self._mass_inverse @ (-law.damping @ dz - law.stiffness @ z - law.contact_map.T @ force)
@@ -227,12 +232,13 @@ class March:
         record: list[FloatArray] = [np.empty((steps + 1, width)) for width in widths]
         record[0][0] = state.acting - loads[0]
         watched = self._places(self.observers, origin, state) if self.observers_travel else self.observers
-        record[1][0] = self.road.rows(self._places(self.contacts, origin, state)) @ state.road[0]
-        record[2][0] = self.road.rows(watched) @ state.road[0]
+        touched = self.road.rows(self._places(self.contacts, origin, state), 0, self.contacts_across)
+        record[1][0] = touched @ state.road[0]
+        record[2][0] = self.road.rows(watched, 0, self.observers_across) @ state.road[0]
         record[3][0], record[4][0] = state.body[0], state.body[2]
         stride, advance = min(STRIDE, WORK // self.road.dofs), self._compiled
         if not self.uses_compiled:
-            entries = self.road.rows(self._places(self.contacts, origin, state)).nnz + self.observers.size
+            entries = touched.nnz + self.observers.size
             stride, advance = min(stride, ENTRIES // max(entries, 1)), self._plain
         stride = max(stride, 1)
         iterations, begin = 0, 0
@@ -409,11 +415,16 @@ class March:
         worst = 0
         origin, begin, end = steps
         moved_on = self._elements(origin + np.arange(begin + 1, end + 1))
-        steps_now, nobody = origin + np.arange(begin + 1, end + 1), self.contacts[:0]
-        rows = self._rows(self.contacts, steps_now, moved_on)
-        slopes = self._rows(self.contacts if dashed else nobody, steps_now, moved_on, derivative=1)
-        before = self._rows(self.contacts if alpha_f else nobody, steps_now - 1, moved_on)
-        watched = self._rows(self.observers, steps_now if self.observers_travel else 0 * steps_now, moved_on)
+        steps_now = origin + np.arange(begin + 1, end + 1)
+        touching, nobody = (self.contacts, self.contacts_across), (self.contacts[:0], 0.0)
+        rows = self._rows(touching, steps_now, moved_on)
+        slopes = self._rows(touching if dashed else nobody, steps_now, moved_on, derivative=1)
+        before = self._rows(touching if alpha_f else nobody, steps_now - 1, moved_on)
+        watched = self._rows(
+            (self.observers, self.observers_across),
+            steps_now if self.observers_travel else 0 * steps_now,
+            moved_on,
+        )
         for step in range(begin + 1, end + 1):
             now = step - begin - 1
             if road.travels:
@@ -477,11 +488,15 @@ class March:
                 record[4][step] = self._mass_inverse @ push
         return -1, worst
 
-    def _rows(self, places: FloatArray, steps: IntArray, moved_on: IntArray, derivative: int = 0) -> _Rows:
+    def _rows(
+        self, places: tuple[FloatArray, ArrayLike], steps: IntArray, moved_on: IntArray, derivative: int = 0
+    ) -> _Rows:
         """Rows of some places at some steps of the journey, on a road that has moved on by so many elements."""
+        along, across = places
         travelled = self.speed * self.time_step * steps - moved_on * self.road.spacing
-        positions = (travelled[:, None] + places).ravel()
-        return _Rows.of(self.road.rows(positions, derivative), len(places))
+        positions = travelled[:, None] + along
+        beside = np.broadcast_to(across, positions.shape).ravel()
+        return _Rows.of(self.road.rows(positions.ravel(), derivative, beside), len(along))
 
     def _places(self, places: FloatArray, step: int, state: State) -> FloatArray:
         """Where contacts or observers stand at a step of the journey, seen from the road."""
@@ -496,13 +511,10 @@ class March:
 
     def _move_on(self, elements: int, state: State) -> None:
         """Let a travelling road follow until it has moved on by so many elements."""
-        mesh = self.road.mesh
-        assert mesh is not None
         elements -= int(state.shifted[0])
         if elements > 0:
             state.shifted[0] += elements
-            # Unknowns per element, all layers.
-            gone = elements * int(mesh.number[4] - mesh.number[2])
+            gone = elements * self.road.column
             state.road[:, :-gone] = state.road[:, gone:].copy()
             state.road[:, -gone:] = 0.0
 

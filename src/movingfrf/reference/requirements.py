@@ -67,6 +67,26 @@ def require_on_road(
         )
 
 
+def require_across(check: Checks, road: FiniteGuideway, across: FloatArray) -> None:
+    """Refuse contacts or observers beside the road.
+
+    Parameters
+    ----------
+    check : Checks
+        Collects the fault.
+    road : FiniteGuideway
+        The road.
+    across : ndarray
+        Where they stand, left of the centre line [m].
+    """
+    if road.width and np.abs(across).max() > 0.5 * road.width * (1 + SAME_PLACE):
+        check.refuse(
+            "road",
+            f"must be wide enough: it is {road.width:g} m wide, and a contact or a point stands "
+            f"{np.abs(across).max():.6g} m from its centre line",
+        )
+
+
 def require_slopes(check: Checks, road: FiniteGuideway) -> None:
     """Refuse an interpolation whose first derivative is not the slope of its rows; a dashpot needs it.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, NotRequired, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,7 +34,7 @@ class Contact:
     path : int
         Number of the profile's path that the contact follows.
     across : float
-        Position across the guideway [m].
+        Position across the guideway, left of its centre line [m].
     footprint : float
         Length over which the contact averages the profile [m].
 
@@ -60,6 +60,15 @@ class Contact:
             check.whole("path", self.path)
             check.finite("across", self.across, "m")
             check.not_negative("footprint", self.footprint, "m")
+
+
+class Offsets(TypedDict):
+    """Offsets between contacts, as a guideway's `moving_frf` takes them, each (receiver, source) [m]."""
+
+    ahead: FloatArray
+    # Of a vehicle with contacts beside the centre line only.
+    across: NotRequired[FloatArray]
+    source_across: NotRequired[FloatArray]
 
 
 class Modes(NamedTuple):
@@ -134,6 +143,21 @@ class Vehicle:
     def positions(self) -> FloatArray:
         """Position of each contact ahead of the reference point [m]."""
         return np.array([contact.position for contact in self.contacts])
+
+    @property
+    def across(self) -> FloatArray:
+        """Position of each contact left of the centre line [m]."""
+        return np.array([contact.across for contact in self.contacts])
+
+    @property
+    def offsets(self) -> Offsets:
+        """Offset of every contact from every contact, as a guideway's `moving_frf` takes them [m]."""
+        ahead, across = self.positions, self.across
+        offsets: Offsets = {"ahead": ahead[:, None] - ahead}
+        if across.any():
+            offsets["across"] = across[:, None] - across
+            offsets["source_across"] = np.broadcast_to(across, offsets["ahead"].shape)
+        return offsets
 
     @property
     def held_stiffness(self) -> FloatArray:

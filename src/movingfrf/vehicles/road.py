@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from movingfrf._checks import checking
+import numpy as np
+
+from movingfrf._checks import Checks, checking
 from movingfrf.vehicles.base import Contact, Vehicle
 
 
@@ -119,13 +121,7 @@ def half_car(
         tyres = check.pair("tyre_stiffness", tyre_stiffness, "N/m")
         tyre_dampers = check.pair("tyre_damping", tyre_damping, "N s/m", positive=False)
         check.not_negative("footprint", footprint, "m")
-        try:
-            front, rear = (check.finite(f"axles[{n}]", x, "m") for n, x in enumerate(axles))
-        except (TypeError, ValueError):
-            check.refuse("axles", f"must be two numbers, (+a, −b) [m], got {axles!r}")
-        else:
-            if front <= rear:
-                check.refuse("axles", f"must have the front axle ahead of the rear one, got {axles!r} m")
+        front, rear = _in_order(check, "axles", axles, "have the front axle ahead of the rear one")
 
     def suspension(at_front: float, at_rear: float) -> list[list[float]]:
         bounce_pitch = at_front * front + at_rear * rear
@@ -153,3 +149,118 @@ def half_car(
         vertical=[1, 0, 1, 1],
         dof_names=["bounce", "pitch", "front_wheel", "rear_wheel"],
     )
+
+
+def full_car(
+    *,
+    body_mass: float,
+    pitch_inertia: float,
+    roll_inertia: float,
+    wheel_masses: tuple[float, float],
+    suspension_stiffness: tuple[float, float],
+    suspension_damping: tuple[float, float],
+    tyre_stiffness: tuple[float, float],
+    tyre_damping: tuple[float, float] = (0.0, 0.0),
+    axles: tuple[float, float],
+    sides: tuple[float, float],
+    footprint: float = 0.0,
+) -> Vehicle:
+    """Four wheels under one body, seven degrees of freedom.
+
+    `bounce`, `pitch`, `roll` of the body, then `front_left_wheel`, `front_right_wheel`, `rear_left_wheel` and
+    `rear_right_wheel`. Pairs are (front, rear), each value that of one wheel. Bounce is that of the centre of mass,
+    positive down; pitch is positive nose down, roll positive left side down. Left wheels follow the profile's
+    path 0, right wheels its path 1.
+
+    Parameters
+    ----------
+    body_mass : float
+        Sprung mass [kg].
+    pitch_inertia, roll_inertia : float
+        Moments of inertia of the sprung mass about its centre of mass [kg m²].
+    wheel_masses : tuple of float
+        Unsprung mass at one wheel [kg].
+    suspension_stiffness, tyre_stiffness : tuple of float
+        Stiffness at one wheel [N/m].
+    suspension_damping, tyre_damping : tuple of float
+        Damping at one wheel [N s/m].
+    axles : tuple of float
+        Positions ahead of the centre of mass [m]: (+a, −b).
+    sides : tuple of float
+        Positions of left and right wheels, left of the centre of mass [m]: (+left, −right).
+    footprint : float
+        Length of a tyre's contact patch [m].
+
+    Returns
+    -------
+    Vehicle
+        With its contacts at `axles` and `sides`.
+
+    Raises
+    ------
+    ValueError
+        If a mass or stiffness is not positive, a damping is negative, or axles or sides are out of order.
+
+    Examples
+    --------
+    >>> car = full_car(body_mass=840.0, pitch_inertia=1100.0, roll_inertia=820.0, wheel_masses=(53.0, 76.0),
+    ...                suspension_stiffness=(1.0e4, 1.3e4), suspension_damping=(900.0, 900.0),
+    ...                tyre_stiffness=(2.0e5, 2.0e5), axles=(1.4, -1.47), sides=(0.7, -0.75))
+    >>> car.natural_frequencies.round(2).tolist()[:3]
+    [0.84, 1.13, 1.48]
+    """
+    with checking() as check:
+        check.positive("body_mass", body_mass, "kg")
+        check.positive("pitch_inertia", pitch_inertia, "kg m²")
+        check.positive("roll_inertia", roll_inertia, "kg m²")
+        wheels = check.pair("wheel_masses", wheel_masses, "kg")
+        springs = check.pair("suspension_stiffness", suspension_stiffness, "N/m")
+        dampers = check.pair("suspension_damping", suspension_damping, "N s/m", positive=False)
+        tyres = check.pair("tyre_stiffness", tyre_stiffness, "N/m")
+        tyre_dampers = check.pair("tyre_damping", tyre_damping, "N s/m", positive=False)
+        along = _in_order(check, "axles", axles, "have the front axle ahead of the rear one")
+        aside = _in_order(check, "sides", sides, "have the left wheels left of the right ones")
+        check.not_negative("footprint", footprint, "m")
+    corners = [(axle, side) for axle in range(2) for side in range(2)]
+    stiffness, damping = np.zeros((2, 7, 7))
+    for wheel, (axle, side) in enumerate(corners):
+        stretch = np.array([1.0, along[axle], aside[side], 0.0, 0.0, 0.0, 0.0])
+        stretch[3 + wheel] = -1.0
+        stiffness += springs[axle] * np.outer(stretch, stretch)
+        damping += dampers[axle] * np.outer(stretch, stretch)
+    return Vehicle(
+        mass=np.diag([body_mass, pitch_inertia, roll_inertia, *(wheels[axle] for axle, _ in corners)]),
+        damping=damping,
+        stiffness=stiffness,
+        contact_map=np.hstack([np.zeros((4, 3)), np.eye(4)]),
+        contacts=[
+            Contact(
+                position=along[axle],
+                stiffness=tyres[axle],
+                damping=tyre_dampers[axle],
+                path=side,
+                across=aside[side],
+                footprint=footprint,
+            )
+            for axle, side in corners
+        ],
+        vertical=[1, 0, 0, 1, 1, 1, 1],
+        dof_names=[
+            "bounce",
+            "pitch",
+            "roll",
+            *(f"{axle}_{side}_wheel" for axle in ("front", "rear") for side in ("left", "right")),
+        ],
+    )
+
+
+def _in_order(check: Checks, name: str, given: tuple[float, float], condition: str) -> tuple[float, float]:
+    """Two positions [m], the first of which is the larger one."""
+    try:
+        first, second = (check.finite(f"{name}[{n}]", x, "m") for n, x in enumerate(given))
+    except (TypeError, ValueError):
+        check.refuse(name, f"must be two numbers, positive ahead or to the left [m], got {given!r}")
+        return 1.0, -1.0
+    if first <= second:
+        check.refuse(name, f"must {condition}, got {given!r} m")
+    return first, second

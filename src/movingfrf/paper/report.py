@@ -1,0 +1,297 @@
+"""The reproduction as files: one page, every figure, every table, and all numbers as JSON."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from movingfrf._checks import finite
+from movingfrf.illustrations import drawn_svg, illustrated
+from movingfrf.page import Column, Row, Table, rendered
+from movingfrf.paper.drawing import as_png, journal
+from movingfrf.paper.items import ITEMS, Reproduction
+from movingfrf.paper.outcome import FAILS, HOLDS, PARTLY, UNJUDGED, Cell, DataTable, Outcome, Statement
+from movingfrf.paper.study import SCENARIOS, scenario
+from movingfrf.progress import Progress, silent
+from movingfrf.version import VERSION
+from movingfrf.wording import number
+
+PAPER = "Fast calculation of vehicle–road coupled response by the moving FRF"
+
+# Verdict → class of its colour.
+KINDS = {HOLDS: "holds", PARTLY: "part", FAILS: "not", UNJUDGED: "open"}
+
+NOTE = (
+    "The text of the paper is at hand without its equations, figures and parameter tables. What it states is "
+    "quoted in the second column; every other value is a substitute, listed with each item. No number here is "
+    "the paper's own unless it says so."
+)
+
+
+class Line(NamedTuple):
+    """One statement of the verdict, with the item it belongs to."""
+
+    name: str
+    anchor: str
+    statement: dict[str, str]
+
+
+def name_of(key: str) -> str:
+    """Write the key of an item as words.
+
+    Parameters
+    ----------
+    key : str
+        Key.
+
+    Returns
+    -------
+    str
+        Words.
+
+    Examples
+    --------
+    >>> name_of("5"), name_of("claim2")
+    ('Item 5', 'Claim 2')
+    """
+    return f"Claim {key.removeprefix('claim')}" if key.startswith("claim") else f"Item {key}"
+
+
+def command_of(key: str, quick: bool) -> str:
+    """Write the command that computes one item alone."""
+    return f"movingfrf paper --only {key}{' --quick' if quick else ''} --output paper"
+
+
+def write(found: Reproduction, folder: Path, progress: Progress = silent) -> None:
+    """Write the page, figures, tables and numbers into a folder.
+
+    Parameters
+    ----------
+    found : Reproduction
+        What was computed.
+    folder : Path
+        An existing folder.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+    """
+    for name in ("figures", "tables"):
+        (folder / name).mkdir()
+    with journal():
+        (folder / "report.html").write_text(page(found), encoding="utf-8")
+        drawings = [plot for outcome in found.outcomes.values() for plot in outcome.plots]
+        for n, plot in enumerate(drawings):
+            progress("figures", n / len(drawings))
+            (folder / "figures" / f"{plot.name}.png").write_bytes(as_png(plot.figure))
+            svg = drawn_svg(plot.figure, plot.name)
+            (folder / "figures" / f"{plot.name}.svg").write_text(svg, encoding="utf-8")
+    for outcome in found.outcomes.values():
+        for table in outcome.tables:
+            (folder / "tables" / f"{table.name}.csv").write_text(as_csv(table), encoding="utf-8")
+    (folder / "paper.json").write_text(as_json(found), encoding="utf-8")
+
+
+def page(found: Reproduction) -> str:
+    """Write the page.
+
+    Parameters
+    ----------
+    found : Reproduction
+        What was computed.
+
+    Returns
+    -------
+    str
+        One HTML page without references to anything outside it.
+    """
+    claims = [key for key in found.outcomes if key.startswith("claim")]
+    others = [key for key in found.outcomes if key not in claims]
+    groups = [
+        {"heading": heading, "lines": list(_lines(found, keys))}
+        for heading, keys in (("The claims", claims), ("Figures and tables", others))
+        if keys
+    ]
+    return rendered(
+        "paper.html.j2",
+        title="The moving FRF, reproduced",
+        version=VERSION,
+        summary=summary(found),
+        note=NOTE,
+        groups=groups,
+        items=[_item(key, found) for key in found.outcomes],
+        scenarios=[scenario(name) for name in SCENARIOS],
+    )
+
+
+def summary(found: Reproduction) -> str:
+    """Count what holds, in sentences.
+
+    Parameters
+    ----------
+    found : Reproduction
+        What was computed.
+
+    Returns
+    -------
+    str
+        Sentences.
+    """
+    verdicts = [statement.verdict for outcome in found.outcomes.values() for statement in outcome.statements]
+    judged = [verdict for verdict in verdicts if verdict != UNJUDGED]
+    words = (
+        f'"{PAPER}", item by item: of {len(judged)} statements that can be judged {verdicts.count(HOLDS)} hold, '
+        f"{verdicts.count(PARTLY)} in part, {verdicts.count(FAILS)} not."
+    )
+    return words + (" Quick version: fewer points, shorter journeys." if found.quick else "")
+
+
+def _lines(found: Reproduction, keys: list[str]) -> Iterator[Line]:
+    for key in keys:
+        for statement in found.outcomes[key].statements:
+            yield Line(name_of(key), f"item-{key}", _statement(statement))
+
+
+def _statement(statement: Statement) -> dict[str, str]:
+    return {**statement._asdict(), "kind": KINDS[statement.verdict]}
+
+
+def _item(key: str, found: Reproduction) -> dict[str, Any]:
+    outcome, item = found.outcomes[key], ITEMS[key]
+    return {
+        "name": name_of(key),
+        "anchor": f"item-{key}",
+        "title": item.title,
+        "place": item.place,
+        "statements": [_statement(statement) for statement in outcome.statements],
+        "computed": outcome.computed,
+        "substitutes": outcome.substitutes,
+        "command": command_of(key, found.quick),
+        "figures": [
+            {
+                **illustrated(plot.name, plot.heading, plot.caption, plot.figure)._asdict(),
+                "name": plot.name,
+            }
+            for plot in outcome.plots
+        ],
+        "tables": [{**readable(table)._asdict(), "name": table.name} for table in outcome.tables if table.on_page],
+    }
+
+
+def readable(table: DataTable) -> Table:
+    """Write the values of a table for reading.
+
+    Parameters
+    ----------
+    table : DataTable
+        The table.
+
+    Returns
+    -------
+    Table
+        With text in its cells.
+    """
+    rows = [Row(name, [_cell(value) for value in values]) for name, values in table.rows]
+    return Table(table.caption, table.corner, list(table.columns), rows)
+
+
+def _cell(value: Cell) -> str:
+    if isinstance(value, str):
+        return value
+    if math.isnan(value):
+        return "–"
+    return f"{value:,}".replace(",", "\u202f") if isinstance(value, int) else number(value, 3)
+
+
+def as_csv(table: DataTable) -> str:
+    """Write a table as CSV, units in its head; what there is not is empty.
+
+    Parameters
+    ----------
+    table : DataTable
+        The table.
+
+    Returns
+    -------
+    str
+        CSV text.
+    """
+    written = io.StringIO()
+    writer = csv.writer(written, lineterminator="\n")
+    writer.writerow([table.corner, *(_head(column) for column in table.columns)])
+    for name, values in table.rows:
+        writer.writerow(
+            [name, *("" if isinstance(value, float) and math.isnan(value) else value for value in values)]
+        )
+    return written.getvalue()
+
+
+def _head(column: Column) -> str:
+    return f"{column.name} [{column.units}]" if column.units else column.name
+
+
+def as_json(found: Reproduction) -> str:
+    """Write statements, verdicts and numbers as JSON, by the items' keys.
+
+    Parameters
+    ----------
+    found : Reproduction
+        What was computed.
+
+    Returns
+    -------
+    str
+        JSON text; a number without a finite value is null.
+    """
+    return (
+        json.dumps(
+            finite(
+                {
+                    "movingfrf": VERSION,
+                    "quick": found.quick,
+                    "items": {key: _as_data(key, outcome) for key, outcome in found.outcomes.items()},
+                }
+            ),
+            indent=1,
+            ensure_ascii=False,
+        )
+        + "\n"
+    )
+
+
+def _as_data(key: str, outcome: Outcome) -> dict[str, Any]:
+    item = ITEMS[key]
+    return {
+        "title": item.title,
+        "place": item.place,
+        "statements": [statement._asdict() for statement in outcome.statements],
+        "numbers": outcome.numbers,
+        "computed": list(outcome.computed),
+        "substitutes": list(outcome.substitutes),
+        "figures": [plot.name for plot in outcome.plots],
+        "tables": [table.name for table in outcome.tables],
+    }
+
+
+def verdict_table(found: Reproduction) -> Table:
+    """List the verdicts for a terminal.
+
+    Parameters
+    ----------
+    found : Reproduction
+        What was computed.
+
+    Returns
+    -------
+    Table
+        One row per statement.
+    """
+    rows = [
+        Row(f"{name_of(key)}, {ITEMS[key].place}", [statement.verdict, ITEMS[key].title])
+        for key, outcome in found.outcomes.items()
+        for statement in outcome.statements
+    ]
+    return Table(summary(found), "", [Column("verdict", ""), Column("about", "")], rows)
