@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -274,8 +274,14 @@ def struck_plate(
     ]
     at, beside = vehicle.positions, vehicle.across
     pairs = np.stack(np.broadcast_arrays(at[:, None] - at, beside[:, None] - beside, beside), axis=-1)
-    ahead, offset, source = np.unique(np.round(pairs.reshape(-1, 3), 9), axis=0).T
-    return moving_impulse_response(
+    wanted = np.unique(np.round(pairs.reshape(-1, 3), 9), axis=0)
+    # Left and right are alike: what is struck on the right is struck on the left, seen in a mirror.
+    mirrored = (wanted[:, 2] < 0) | ((wanted[:, 2] == 0) & (wanted[:, 1] < 0))
+    on_the_left, back = np.unique(
+        np.where(mirrored[:, None], wanted * [1.0, -1.0, -1.0], wanted) + 0.0, axis=0, return_inverse=True
+    )
+    ahead, offset, source = on_the_left.T
+    struck = moving_impulse_response(
         roads,
         speed=speed,
         offsets=ahead,
@@ -288,6 +294,9 @@ def struck_plate(
         scheme=recipe.scheme,
         progress=progress,
     )
+    ahead, offset, source = wanted.T
+    response = struck.samples[:, back.ravel()]
+    return replace(struck, response=response, offsets=ahead, across=offset, source_across=source)
 
 
 def _stiffnesses(bending: float, poisson: float, transverse: float) -> Stiffnesses:
