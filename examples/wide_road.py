@@ -32,9 +32,7 @@ TRUCK = mf.full_car(
 
 def surface(*seeds: int) -> mf.Profile:
     """Realise one path for each seed: left, right."""
-    spectrum = mf.IsoRoad.of_class("A", band=(0.01, 4.0))
-    paths = [mf.realise(spectrum, length=45.0, step=0.05, seed=seed, start=-5.0) for seed in seeds]
-    return mf.Profile(paths[0].distance, np.stack([np.asarray(path.elevation) for path in paths], axis=1))
+    return mf.realise(mf.IsoRoad.of_class("A", band=(0.01, 4.0)), length=45.0, seed=seeds, start=-5.0)
 
 
 def by_moving_frf(profile: mf.Profile) -> xr.Dataset:

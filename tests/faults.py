@@ -241,6 +241,7 @@ FAULTS = [
         "beside[:, None] - beside, beside)",
         "beside[:, None] - beside, beside[:, None])",
     ),
+    Fault("mirror that leaves the source", "reference/plate.py", "[1.0, -1.0, -1.0]", "[1.0, -1.0, 1.0]"),
     Fault("struck in the middle", "reference/impulse.py", "0, blow.across).toarray()", "0, 0.0).toarray()"),
     Fault("watched beside the centre line", "reference/impulse.py", "(sources + beside)[seen]", "beside[seen]"),
     Fault(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import sys
 import time
 import warnings
@@ -25,13 +26,16 @@ if TYPE_CHECKING:
     from movingfrf.page import Table as TableForReading
 
 # Exit statuses.
-DONE, DEFECT, REFUSED, INTERRUPTED = 0, 1, 2, 130
+DONE, DEFECT, REFUSED, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 
 # Raised digits and minus signs → as they are typed.
 TYPED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
 
 # A computation shorter than this shows no progress [s].
 PATIENCE = 1.0
+
+# The most that a stage shows as done.
+ALMOST = 0.999
 
 app = App(
     name="movingfrf",
@@ -297,7 +301,8 @@ class _Stages:
             self._stage, self._since = stage, now
         if self._shows and now - self._began > PATIENCE and stage and not self._display.live.is_started:
             self._display.start()
-        self._display.update(self._task, description=stage, completed=fraction)
+        # A task that is done would stop its clock.
+        self._display.update(self._task, description=stage, completed=min(fraction, ALMOST))
 
     def table(self) -> Table:
         """Time of every stage."""
@@ -379,7 +384,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def entry() -> None:
-    """Run the command as a process."""
+    """Run the command as a process; told to end, it leaves nothing half done."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
     sys.exit(main())
 
 

@@ -122,11 +122,12 @@ def compare(
     *,
     curve: bool = True,
     memory: bool = True,
+    runs: int = RUNS,
     progress: Progress = silent,
 ) -> Comparison:
     """Solve one case by several methods and compare times, memory and errors.
 
-    One thread. Times are medians of up to three runs, after a short one that is not timed.
+    One thread. Times are medians of a few runs, after a short one that is not timed.
 
     Parameters
     ----------
@@ -138,6 +139,8 @@ def compare(
         Whether to run the methods over a range of steps as well.
     memory : bool
         Whether to measure peak memory, each method in a process of its own.
+    runs : int
+        Number of runs of which the median is taken, at most: fewer where they take long.
     progress : callable
         Called with the name of a stage and the fraction of it that is done.
 
@@ -162,8 +165,8 @@ def compare(
         _warm_up(own, compared, progress)
         reference = converged(scenario, progress)
         own = replace(own, around=reference.around)
-        rows = [_row(name, method, own, reference, memory, progress) for name, method in compared.items()]
-        points = _curve(own, compared, reference, progress) if curve else []
+        rows = [_row(name, method, own, reference, memory, runs, progress) for name, method in compared.items()]
+        points = _curve(own, compared, reference, runs, progress) if curve else []
     first = next((row for row in rows if row.method == "moving-frf"), None)
     if first is not None:
         least = first.setup_s + first.solve_s
@@ -346,12 +349,12 @@ def _warm_up(case: Case, methods: Mapping[str, Method], progress: Progress) -> N
         method.prepare(short)()
 
 
-def _timed(method: Method, case: Case) -> tuple[float, float, xr.Dataset]:
+def _timed(method: Method, case: Case, runs: int) -> tuple[float, float, xr.Dataset]:
     """Median times of preparing and of solving [s], and the result."""
     setups: list[float] = []
     solves: list[float] = []
     began = time.perf_counter()
-    while len(setups) < RUNS and (not setups or time.perf_counter() - began < PATIENCE):
+    while len(setups) < runs and (not setups or time.perf_counter() - began < PATIENCE):
         first = time.perf_counter()
         solve = method.prepare(case)
         second = time.perf_counter()
@@ -361,9 +364,11 @@ def _timed(method: Method, case: Case) -> tuple[float, float, xr.Dataset]:
     return statistics.median(setups), statistics.median(solves), result
 
 
-def _row(name: str, method: Method, case: Case, reference: Reference, memory: bool, progress: Progress) -> Row:
+def _row(
+    name: str, method: Method, case: Case, reference: Reference, memory: bool, runs: int, progress: Progress
+) -> Row:
     progress(f"{name}, {case.time_step:g} s", 0.0)
-    setup, solve, result = _timed(method, case)
+    setup, solve, result = _timed(method, case, runs)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ValidityWarning)
         method.prepare(case)()
@@ -385,7 +390,9 @@ def _row(name: str, method: Method, case: Case, reference: Reference, memory: bo
     )
 
 
-def _curve(case: Case, methods: Mapping[str, Method], reference: Reference, progress: Progress) -> list[Point]:
+def _curve(
+    case: Case, methods: Mapping[str, Method], reference: Reference, timings: int, progress: Progress
+) -> list[Point]:
     """Run every method over a range of steps, and over some elements where it has any."""
     journey = case.scenario.journey
     # A step must leave a few samples, and be a whole multiple or part of the scenario's.
@@ -399,7 +406,7 @@ def _curve(case: Case, methods: Mapping[str, Method], reference: Reference, prog
     points = []
     for number, (name, run) in enumerate(runs):
         progress(f"error over time: {name}, {run.time_step:g} s", number / len(runs))
-        setup, solve, result = _timed(methods[name], run)
+        setup, solve, result = _timed(methods[name], run, timings)
         error = relative_l2(*_aligned(result, run, reference))
         element = run.element if methods[name].divides else math.nan
         points.append(Point(name, run.time_step, element, setup + solve, error))

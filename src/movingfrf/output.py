@@ -50,8 +50,10 @@ def replacing(folder: Path) -> Iterator[Path]:
             yield temporary
             written = {file: folder / file.relative_to(temporary) for file in sorted(temporary.rglob("*"))}
             for file, target in written.items():
-                if target.exists() and target.is_dir() != file.is_dir():
-                    raise IsADirectoryError(errno.EISDIR, "is a folder, or should be", str(target))
+                if target.is_dir() and not file.is_dir():
+                    raise IsADirectoryError(errno.EISDIR, "is a folder", str(target))
+                if target.is_file() and file.is_dir():
+                    raise NotADirectoryError(errno.ENOTDIR, "is a file where a folder is needed", str(target))
             for file, target in written.items():
                 if file.is_dir():
                     target.mkdir(exist_ok=True)

@@ -33,6 +33,9 @@ FEWEST_SAMPLES = 32
 # Below this share of its size a variation is rounding, below this elevation [m] a road is flat.
 ROUNDING, FLAT = 1e-9, 1e-12
 
+# Letters that fit beside each other into a legend above a figure, and what a curve's sign takes of them.
+LEGEND_WIDTH, LEGEND_KEY = 118, 7
+
 # Orders of magnitude of a spectral density that are drawn, and the share of the variance its frequency axis shows.
 DRAWN_RANGE, DRAWN_VARIANCE = 1e-7, 0.9999
 
@@ -631,11 +634,12 @@ def legend_above(ax: Axes) -> Axes:
     matplotlib.axes.Axes
         `ax`.
     """
-    if ax.get_legend_handles_labels()[0]:
+    names = ax.get_legend_handles_labels()[1]
+    if names:
         ax.legend(
             loc="lower left",
             bbox_to_anchor=(0.0, 1.0),
-            ncols=4,
+            ncols=max(1, min(4, LEGEND_WIDTH // (max(map(len, names)) + LEGEND_KEY))),
             columnspacing=1.5,
             frameon=False,
             borderaxespad=0.2,

@@ -167,10 +167,7 @@ def iso_road(
 
     A list of seeds gives one path each: equal seeds equal paths, different ones paths without anything in common.
     """
-    seeds: list[Any] = list(seed) if isinstance(seed, (list, tuple)) else [seed]
     with checking() as check:
-        if not seeds:
-            check.refuse("seed", "must be a whole number, or a list of them, one per path, got an empty list")
         if (roughness is None) == (road_class is None):
             check.refuse("road_class", "or roughness is needed: a class, A to H, or a number [m³], not both")
     if road_class is not None:
@@ -179,13 +176,10 @@ def iso_road(
         assert roughness is not None
         spectrum = IsoRoad(roughness=roughness, waviness=waviness, band=band)
     first, last = interval
-    paths = [realise(spectrum, length=last - first, step=step, seed=number, start=first) for number in seeds]
-    elevation = np.stack([np.asarray(path.elevation) for path in paths], axis=1)
     return Road(
-        paths[0] if len(paths) == 1 else Profile(paths[0].distance, elevation),
+        realise(spectrum, length=last - first, step=step, seed=seed, start=first),
         f"ISO 8608 class {iso_class(spectrum.roughness)}, {spectrum.roughness:g} m³ at 0.1 cycle/m, waviness "
-        f"{waviness:g}, {spectrum.band[0]:g} to {spectrum.band[1]:g} cycle/m, seed "
-        f"{', '.join(map(str, seeds))}",
+        f"{waviness:g}, {spectrum.band[0]:g} to {spectrum.band[1]:g} cycle/m, seed {seed}",
     )
 
 

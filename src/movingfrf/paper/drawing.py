@@ -110,5 +110,6 @@ def as_png(figure: Figure) -> bytes:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     written = io.BytesIO()
+    figure.set_dpi(RESOLUTION)  # drawing as SVG sets another one
     FigureCanvasAgg(figure).print_png(written, metadata={"Software": None})  # type: ignore[no-untyped-call]
     return written.getvalue()

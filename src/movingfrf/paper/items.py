@@ -34,12 +34,33 @@ ITEMS: dict[str, Item] = {
     "10": Item("Vehicle accelerations", "Figs. 16 and 17", vehicle.accelerations),
     "11": Item("Three dimensions", "Fig. 18 and the comparison after it", plate.in_three_dimensions),
     "12": Item("Times of all methods", "the last table", vehicle.times),
-    "claim1": Item("Time-varying becomes time-invariant", "claim", claims.time_invariant),
-    "claim2": Item("Cheaper by orders of magnitude", "claim", claims.cheaper),
-    "claim3": Item("Truncation error below 10⁻⁴ beyond 70 Hz", "claim", claims.truncation),
-    "claim4": Item("A road of 40 m suffices", "claim", road.where_it_fails),
-    "claim5": Item("What is left open", "claim", claims.left_open),
+    "claim1": Item("Time-varying becomes time-invariant", "", claims.time_invariant),
+    "claim2": Item("Cheaper by orders of magnitude", "", claims.cheaper),
+    "claim3": Item("Truncation error below 10⁻⁴ beyond 70 Hz", "", claims.truncation),
+    "claim4": Item("A road of 40 m suffices", "", road.where_it_fails),
+    "claim5": Item("What is left open", "", claims.left_open),
 }
+
+
+def name_of(key: str) -> str:
+    """Write the key of an item as words.
+
+    Parameters
+    ----------
+    key : str
+        Key.
+
+    Returns
+    -------
+    str
+        Words.
+
+    Examples
+    --------
+    >>> name_of("5"), name_of("claim2")
+    ('Item 5', 'Claim 2')
+    """
+    return f"Claim {key.removeprefix('claim')}" if key.startswith("claim") else f"Item {key}"
 
 
 class Reproduction(NamedTuple):
@@ -71,7 +92,7 @@ def chosen(only: Sequence[str] | None) -> list[str]:
         return list(ITEMS)
     unknown = [key for key in only if key not in ITEMS]
     if unknown or not only:
-        close = difflib.get_close_matches(unknown[0], ITEMS, n=1) if unknown else []
+        close = difflib.get_close_matches(unknown[0], ITEMS, n=1) if unknown and not unknown[0].isdigit() else []
         hint = f" (did you mean {close[0]!r}?)" if close else ""
         raise ValueError(f"only must name items among {', '.join(ITEMS)}, got {', '.join(unknown) or 'none'}{hint}")
     return [key for key in ITEMS if key in only]
@@ -118,7 +139,7 @@ def reproduce(
     with journal():
         for number, key in enumerate(keys, start=1):
             item = ITEMS[key]
-            current = f"{number} of {len(keys)}, {key if key.startswith('claim') else f'item {key}'} ({item.place})"
+            current = f"{number}/{len(keys)} {name_of(key)}"
             progress(current, (number - 1) / len(keys))
             outcomes[key] = item.compute(study)
     return Reproduction(outcomes, quick)

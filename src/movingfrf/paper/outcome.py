@@ -11,17 +11,25 @@ from movingfrf.page import Column
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-HOLDS, PARTLY, FAILS, UNJUDGED = "holds", "holds in part", "does not hold", "not judged"
+HOLDS, PARTLY, FAILS = "holds", "holds in part", "does not hold"
+# Nothing to judge: the paper shows without stating, or the quick version does not go far enough; and what is shown
+# beyond the paper.
+UNJUDGED, SHOWN = "not judged", "shown"
+JUDGED = (HOLDS, PARTLY, FAILS)
 
 Cell = float | int | str
 
 
 class Statement(NamedTuple):
-    """What the paper states, what was found, and whether that agrees."""
+    """What the paper states, what was found, and whether that agrees.
+
+    Words in quotation marks are the paper's; "(implied)" marks what its figures or their use say without words.
+    """
 
     stated: str
     found: str
     verdict: str
+    rule: str = ""  # when it holds, and when in part
 
 
 class Plot(NamedTuple):

@@ -14,8 +14,19 @@ from movingfrf._checks import finite
 from movingfrf.illustrations import drawn_svg, illustrated
 from movingfrf.page import Column, Row, Table, rendered
 from movingfrf.paper.drawing import as_png, journal
-from movingfrf.paper.items import ITEMS, Reproduction
-from movingfrf.paper.outcome import FAILS, HOLDS, PARTLY, UNJUDGED, Cell, DataTable, Outcome, Statement
+from movingfrf.paper.items import ITEMS, Reproduction, name_of
+from movingfrf.paper.outcome import (
+    FAILS,
+    HOLDS,
+    JUDGED,
+    PARTLY,
+    SHOWN,
+    UNJUDGED,
+    Cell,
+    DataTable,
+    Outcome,
+    Statement,
+)
 from movingfrf.paper.study import SCENARIOS, scenario
 from movingfrf.progress import Progress, silent
 from movingfrf.version import VERSION
@@ -23,13 +34,16 @@ from movingfrf.wording import number
 
 PAPER = "Fast calculation of vehicle–road coupled response by the moving FRF"
 
+# What is written beside the page and the numbers.
+FOLDERS = ("figures", "tables", "scenarios")
+
 # Verdict → class of its colour.
-KINDS = {HOLDS: "holds", PARTLY: "part", FAILS: "not", UNJUDGED: "open"}
+KINDS = {HOLDS: "holds", PARTLY: "part", FAILS: "not", UNJUDGED: "open", SHOWN: "open"}
 
 NOTE = (
-    "The text of the paper is at hand without its equations, figures and parameter tables. What it states is "
-    "quoted in the second column; every other value is a substitute, listed with each item. No number here is "
-    "the paper's own unless it says so."
+    "The text of the paper is at hand without its equations, figures and parameter tables. Words in quotation "
+    "marks are its own; (implied) is what its figures or their use say without words. What the text does not "
+    "give is substituted, and listed with each item: no number here is the paper's own unless it says so."
 )
 
 
@@ -41,30 +55,9 @@ class Line(NamedTuple):
     statement: dict[str, str]
 
 
-def name_of(key: str) -> str:
-    """Write the key of an item as words.
-
-    Parameters
-    ----------
-    key : str
-        Key.
-
-    Returns
-    -------
-    str
-        Words.
-
-    Examples
-    --------
-    >>> name_of("5"), name_of("claim2")
-    ('Item 5', 'Claim 2')
-    """
-    return f"Claim {key.removeprefix('claim')}" if key.startswith("claim") else f"Item {key}"
-
-
 def command_of(key: str, quick: bool) -> str:
     """Write the command that computes one item alone."""
-    return f"movingfrf paper --only {key}{' --quick' if quick else ''} --output paper"
+    return f"movingfrf paper --only {key}{' --quick' if quick else ''} --output out/{key}"
 
 
 def write(found: Reproduction, folder: Path, progress: Progress = silent) -> None:
@@ -79,7 +72,7 @@ def write(found: Reproduction, folder: Path, progress: Progress = silent) -> Non
     progress : callable
         Called with the name of a stage and the fraction of it that is done.
     """
-    for name in ("figures", "tables"):
+    for name in FOLDERS:
         (folder / name).mkdir()
     with journal():
         (folder / "report.html").write_text(page(found), encoding="utf-8")
@@ -92,7 +85,12 @@ def write(found: Reproduction, folder: Path, progress: Progress = silent) -> Non
     for outcome in found.outcomes.values():
         for table in outcome.tables:
             (folder / "tables" / f"{table.name}.csv").write_text(as_csv(table), encoding="utf-8")
+    for name in SCENARIOS:
+        (folder / "scenarios" / f"{name}.toml").write_text(scenario(name).text, encoding="utf-8")
     (folder / "paper.json").write_text(as_json(found), encoding="utf-8")
+    for name in FOLDERS:
+        if not any((folder / name).iterdir()):
+            (folder / name).rmdir()
 
 
 def page(found: Reproduction) -> str:
@@ -109,20 +107,16 @@ def page(found: Reproduction) -> str:
         One HTML page without references to anything outside it.
     """
     claims = [key for key in found.outcomes if key.startswith("claim")]
-    others = [key for key in found.outcomes if key not in claims]
-    groups = [
-        {"heading": heading, "lines": list(_lines(found, keys))}
-        for heading, keys in (("The claims", claims), ("Figures and tables", others))
-        if keys
-    ]
+    others = [_item(key, found) for key in found.outcomes if key not in claims]
     return rendered(
         "paper.html.j2",
         title="The moving FRF, reproduced",
         version=VERSION,
         summary=summary(found),
         note=NOTE,
-        groups=groups,
-        items=[_item(key, found) for key in found.outcomes],
+        claims=list(_lines(found, claims)),
+        others=others,
+        items=[*others, *(_item(key, found) for key in claims)],
         scenarios=[scenario(name) for name in SCENARIOS],
     )
 
@@ -141,10 +135,12 @@ def summary(found: Reproduction) -> str:
         Sentences.
     """
     verdicts = [statement.verdict for outcome in found.outcomes.values() for statement in outcome.statements]
-    judged = [verdict for verdict in verdicts if verdict != UNJUDGED]
+    judged = [verdict for verdict in verdicts if verdict in JUDGED]
+    held, partly, failed = (verdicts.count(verdict) for verdict in JUDGED)
     words = (
-        f'"{PAPER}", item by item: of {len(judged)} statements that can be judged {verdicts.count(HOLDS)} hold, '
-        f"{verdicts.count(PARTLY)} in part, {verdicts.count(FAILS)} not."
+        f'"{PAPER}", item by item. Statements that can be judged: {len(judged)}, of which {held} hold, {partly} '
+        "in part "
+        f"and {failed} not."
     )
     return words + (" Quick version: fewer points, shorter journeys." if found.quick else "")
 
@@ -287,11 +283,13 @@ def verdict_table(found: Reproduction) -> Table:
     Returns
     -------
     Table
-        One row per statement.
+        One row per item.
     """
     rows = [
-        Row(f"{name_of(key)}, {ITEMS[key].place}", [statement.verdict, ITEMS[key].title])
+        Row(
+            f"{name_of(key)}: {ITEMS[key].title}",
+            ["; ".join(statement.verdict for statement in outcome.statements)],
+        )
         for key, outcome in found.outcomes.items()
-        for statement in outcome.statements
     ]
-    return Table(summary(found), "", [Column("verdict", ""), Column("about", "")], rows)
+    return Table(summary(found), "", [Column("verdict", "")], rows)

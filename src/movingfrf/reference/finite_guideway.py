@@ -408,12 +408,12 @@ def require_stretch(
             f"of a road that travels along must be among {', '.join(sorted(FOLLOWING))}, so that what joins and "
             f"leaves it is at rest, got {shown(ends)}",
         )
+    if not check.faults and last - first < 4 * element:
+        check.refuse("last", f"must lie four elements of {element:g} m or more behind first, got {last!r} m")
     if not check.faults and "absorbing" in both and length > 0.5 * (last - first):
         check.refuse(
             "absorbing", f"must be at most half of the stretch, {0.5 * (last - first):.6g} m, got {length!r} m"
         )
-    if not check.faults and last - first < 4 * element:
-        check.refuse("last", f"must lie four elements of {element:g} m or more behind first, got {last!r} m")
     return both, length  # type: ignore[return-value]
 
 

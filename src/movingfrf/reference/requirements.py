@@ -157,7 +157,8 @@ def require_stable_scheme(
     if vehicle is not None:
         # No vibration of the two together is faster than this: stiffnesses add, and so do squares of frequencies.
         springs = max(contact.stiffness for contact in vehicle.contacts)
-        rows = road.rows(np.linspace(*road.interval, PLACES)).toarray()
+        along, across = np.meshgrid(np.linspace(*road.interval, PLACES), np.unique(vehicle.across))
+        rows = road.rows(along.ravel(), 0, across.ravel()).toarray()
         moved = float(np.einsum("pd,dp->p", rows, solver(road.mass).solve(rows.T)).max())
         own = float(eigvalsh(vehicle.held_stiffness, vehicle.matrices[0])[-1])
         highest, what = float(np.sqrt(highest**2 + own + springs * moved)), "road and vehicle"

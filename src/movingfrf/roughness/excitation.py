@@ -121,5 +121,8 @@ def require_cover(profile: Profile, first: float, last: float, paths: Sequence[i
             f"the profile must cover the journey from {first:.6g} m to {last:.6g} m, "
             f"but it reaches from {stations[0]:.6g} m to {stations[-1]:.6g} m"
         )
-    if max(paths) >= profile.paths:
-        raise ValueError(f"a contact follows path {max(paths)}, but the profile has {profile.paths} path(s)")
+    if not profile.same_across and max(paths) >= profile.paths:
+        raise ValueError(
+            f"a contact follows path {max(paths)}, but the profile has {profile.paths} path(s), counted from 0; a "
+            "profile without columns is the same for all paths"
+        )

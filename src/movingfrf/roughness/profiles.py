@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
@@ -28,7 +29,7 @@ class Profile:
     distance : array_like, shape (distance,)
         Stations along the road [m], increasing; at least four.
     elevation : array_like, shape (distance,) or (distance, path)
-        Elevation [m], positive up; one column per path.
+        Elevation [m], positive up: the same for all paths, or one column for each.
 
     Raises
     ------
@@ -80,6 +81,11 @@ class Profile:
         elevation = np.asarray(self.elevation)
         return 1 if elevation.ndim == 1 else elevation.shape[1]
 
+    @property
+    def same_across(self) -> bool:
+        """Whether all paths have the same elevation: there are no columns."""
+        return np.ndim(self.elevation) == 1
+
     def along(self, path: int = 0) -> CubicSpline:
         """Elevation of one path as a function of distance: the cubic spline through its samples.
 
@@ -112,7 +118,14 @@ class Spectrum(Protocol):
         ...
 
 
-def realise(spectrum: Spectrum, *, length: float, step: float = 0.05, seed: int = 0, start: float = 0.0) -> Profile:
+def realise(
+    spectrum: Spectrum,
+    *,
+    length: float,
+    step: float = 0.05,
+    seed: int | Sequence[int] = 0,
+    start: float = 0.0,
+) -> Profile:
     """One road of many: a profile with the given spectrum and random phases.
 
     A sum of harmonics over the band whose variances are exactly those of the spectrum, one per frequency line,
@@ -127,8 +140,9 @@ def realise(spectrum: Spectrum, *, length: float, step: float = 0.05, seed: int 
         Length of the profile [m].
     step : float
         Distance between stations [m]; at most half of the shortest wave.
-    seed : int
-        Seed of the phases: the same seed gives the same road.
+    seed : int or sequence of int
+        Seed of the phases: the same seed gives the same road. Several: one path each; equal seeds give equal paths,
+        different ones paths without anything in common.
     start : float
         First station [m].
 
@@ -140,7 +154,7 @@ def realise(spectrum: Spectrum, *, length: float, step: float = 0.05, seed: int 
     Raises
     ------
     ValueError
-        If a length is not positive or the step is too coarse for the band.
+        If a length is not positive, the step is too coarse for the band, or there is no seed.
 
     Examples
     --------
@@ -152,7 +166,10 @@ def realise(spectrum: Spectrum, *, length: float, step: float = 0.05, seed: int 
     with checking() as check:
         check.positive("length", length, "m")
         check.positive("step", step, "m")
-        check.whole("seed", seed)
+        several = isinstance(seed, (list, tuple))
+        seeds = [check.whole("seed", number) for number in (seed if isinstance(seed, (list, tuple)) else [seed])]
+        if not seeds:
+            check.refuse("seed", "must be a whole number, or one for each path, got an empty list")
         check.finite("start", start, "m")
         if not check.faults and step * spectrum.band[1] > 0.5 * (1 + 1e-9):
             check.refuse(
@@ -166,10 +183,13 @@ def realise(spectrum: Spectrum, *, length: float, step: float = 0.05, seed: int 
     period = scipy.fft.next_fast_len(period, real=True)
     edges = (np.arange(period // 2 + 2) - 0.5) / (period * step)
     variance = np.diff(spectrum.variance_below(np.maximum(edges, 0.0)))
-    phase = np.random.default_rng(seed).uniform(0.0, 2 * np.pi, variance.size)
-    # A real harmonic of variance σ² has the amplitude √2 σ, half of it at the positive frequency.
-    elevation = scipy.fft.irfft(np.sqrt(variance / 2) * np.exp(1j * phase) * period, period)[:count]
-    return Profile(start + step * np.arange(count), elevation)
+    elevations = []
+    for number in seeds:
+        phase = np.random.default_rng(number).uniform(0.0, 2 * np.pi, variance.size)
+        # A real harmonic of variance σ² has the amplitude √2 σ, half of it at the positive frequency.
+        harmonics = np.sqrt(variance / 2) * np.exp(1j * phase) * period
+        elevations.append(scipy.fft.irfft(harmonics, period)[:count])
+    return Profile(start + step * np.arange(count), np.stack(elevations, axis=1) if several else elevations[0])
 
 
 def harmonic(
