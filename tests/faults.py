@@ -165,7 +165,7 @@ FAULTS = [
     Fault("arithmetic class centres", "roughness/spectra.py", "16e-6 * 4.0**n", "20e-6 * 4.0**n"),
     Fault("limits at the centres", "roughness/spectra.py", "roughness < 2 * centre", "roughness < centre"),
     Fault("waviness ignored", "roughness/spectra.py", "power = 1 - self.waviness", "power = 1 - 2.0"),
-    Fault("seed ignored", "roughness/profiles.py", "default_rng(seed)", "default_rng(0)"),
+    Fault("seed ignored", "roughness/profiles.py", "default_rng(number)", "default_rng(0)"),
     Fault("second path is the first", "roughness/profiles.py", "elevation[:, path]", "elevation[:, 0]"),
     Fault("datum left in", "roughness/excitation.py", "seen -= datums[path]", "pass"),
     Fault("blend twice as long", "roughness/excitation.py", "- foremost) / blend", "- foremost) / (2 * blend)"),

@@ -188,7 +188,7 @@ def test_a_full_car_and_a_seed_for_each_path():
     assert scenario.vehicle.dof_names[:3] == ("bounce", "pitch", "roll")
     profile = scenario.road.profile
     assert profile.paths == 2
-    assert scenario.road.description.endswith("seed 0, 1")
+    assert scenario.road.description.endswith("seed [0, 1]")
     for path, seed in enumerate((0, 1)):
         alone = parse_scenario(four_wheels(f"[{seed}, {seed}]")).road.profile
         assert (alone.elevation[:, 0] == alone.elevation[:, 1]).all()
@@ -204,20 +204,21 @@ def test_a_full_car_and_a_seed_for_each_path():
     ).drop_attrs()
     assert result.drop_attrs().identical(direct)
     assert np.abs(result.motion.sel(dof="roll")).max() > 1e-5
-    same = parse_scenario(four_wheels("[1, 1]")).run()
+    same, single = (parse_scenario(four_wheels(seeds)).run() for seeds in ("[1, 1]", "1"))
     assert np.abs(same.motion.sel(dof="roll")).max() < 0.1 * np.abs(result.motion.sel(dof="roll")).max()
+    # A single seed makes one road for all of the width.
+    assert (same.contact_force.values == single.contact_force.values).all()
 
 
 @pytest.mark.parametrize(
     ("seeds", "name", "message"),
     [
-        ("[]", "roughness.seed", "or a list of them, one per path, got an empty list"),
+        ("[]", "roughness.seed", "must be a whole number, or one for each path, got an empty list"),
         ("[0, -1]", "roughness.seed", "must be a whole number of at least 0, got -1"),
         ("[0, 1.5]", "roughness.seed", "must be a whole number of at least 0, got 1.5"),
         ('[0, "one"]', "roughness.seed", "must be a whole number"),
         ("[[0, 1]]", "roughness.seed", "must be a whole number"),
         ("true", "roughness.seed", "must be a whole number"),
-        ("0", "roughness:", "a contact follows path 1, but the profile has 1 path(s)"),
         ("[4]", "roughness:", "a contact follows path 1, but the profile has 1 path(s)"),
     ],
 )

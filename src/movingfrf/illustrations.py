@@ -108,11 +108,25 @@ def drawn_svg(figure: Figure, key: str) -> str:
     return written.getvalue()
 
 
-def _svg(figure: Figure, key: str, label: str) -> str:
-    """Inline SVG of a figure, its ids made unique on the page by `key`."""
+def inlined(svg: str, key: str, label: str) -> str:
+    """Turn an SVG file into markup for a page that holds several.
+
+    Parameters
+    ----------
+    svg : str
+        What `drawn_svg` returned.
+    key : str
+        Makes its ids unique on the page.
+    label : str
+        What it shows, for those who do not see it.
+
+    Returns
+    -------
+    str
+        Markup.
+    """
     from markupsafe import Markup, escape
 
-    svg = drawn_svg(figure, key)
     svg = svg[svg.index("<svg") :]
     # Only inside tags: text between them may say whatever it likes.
     svg = re.sub(r"<[^>]+>", lambda tag: re.sub(r'(\bid="|href="#|url\(#)', rf"\1{key}-", tag.group()), svg)
@@ -121,7 +135,7 @@ def _svg(figure: Figure, key: str, label: str) -> str:
 
 def illustrated(key: str, heading: str, caption: str, figure: Figure) -> Illustration:
     """Turn a figure into an illustration; `key` makes its ids unique on the page."""
-    return Illustration(heading, _svg(figure, key, heading), caption)
+    return Illustration(heading, inlined(drawn_svg(figure, key), key, heading), caption)
 
 
 def of_coupled(result: xr.Dataset, guideway: Guideway) -> list[Illustration]:

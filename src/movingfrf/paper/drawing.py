@@ -11,7 +11,7 @@ import numpy as np
 
 from movingfrf import plots
 from movingfrf._checks import FloatArray
-from movingfrf.illustrations import drawing
+from movingfrf.illustrations import drawing, drawn_svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -105,11 +105,14 @@ def amplitude_spectrum(values: FloatArray, time_step: float) -> tuple[FloatArray
     return np.fft.rfftfreq(len(values), time_step), spectrum
 
 
-def as_png(figure: Figure) -> bytes:
-    """Bitmap of a figure; equal figures give equal bytes."""
+def drawn(figure: Figure, key: str) -> tuple[str, bytes]:
+    """Draw a figure as SVG and as a bitmap (PNG); equal figures and keys give equal files."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+    svg = drawn_svg(figure, key)
+    # Drawing has placed everything; doing so again would take most of the time.
+    figure.set_layout_engine("none")
+    figure.set_dpi(RESOLUTION)
     written = io.BytesIO()
-    figure.set_dpi(RESOLUTION)  # drawing as SVG sets another one
     FigureCanvasAgg(figure).print_png(written, metadata={"Software": None})  # type: ignore[no-untyped-call]
-    return written.getvalue()
+    return svg, written.getvalue()

@@ -74,7 +74,7 @@ class Models:
     @property
     def duration(self) -> float:
         """Time that is travelled [s]."""
-        return 3.0 if self.study.quick else scenario("truck_3d").journey.duration
+        return 2.0 if self.study.quick else scenario("truck_3d").journey.duration
 
     @property
     def across(self) -> int:
@@ -140,8 +140,8 @@ class Models:
             width=WIDTH,
             first=-20.0,
             last=20.0,
-            element=0.25,
-            across=12,
+            element=0.5 if self.study.quick else 0.25,
+            across=2 * self.across,
             poisson=poisson,
             transverse=transverse,
             ends="clamped",

@@ -6,14 +6,14 @@ import csv
 import io
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from movingfrf._checks import finite
-from movingfrf.illustrations import drawn_svg, illustrated
+from movingfrf.illustrations import inlined
 from movingfrf.page import Column, Row, Table, rendered
-from movingfrf.paper.drawing import as_png, journal
+from movingfrf.paper.drawing import drawn, journal
 from movingfrf.paper.items import ITEMS, Reproduction, name_of
 from movingfrf.paper.outcome import (
     FAILS,
@@ -74,14 +74,15 @@ def write(found: Reproduction, folder: Path, progress: Progress = silent) -> Non
     """
     for name in FOLDERS:
         (folder / name).mkdir()
+    drawings: dict[str, str] = {}
+    plots = [plot for outcome in found.outcomes.values() for plot in outcome.plots]
     with journal():
-        (folder / "report.html").write_text(page(found), encoding="utf-8")
-        drawings = [plot for outcome in found.outcomes.values() for plot in outcome.plots]
-        for n, plot in enumerate(drawings):
-            progress("figures", n / len(drawings))
-            (folder / "figures" / f"{plot.name}.png").write_bytes(as_png(plot.figure))
-            svg = drawn_svg(plot.figure, plot.name)
-            (folder / "figures" / f"{plot.name}.svg").write_text(svg, encoding="utf-8")
+        for n, plot in enumerate(plots):
+            progress("figures", n / len(plots))
+            drawings[plot.name], bitmap = drawn(plot.figure, plot.name)
+            (folder / "figures" / f"{plot.name}.svg").write_text(drawings[plot.name], encoding="utf-8")
+            (folder / "figures" / f"{plot.name}.png").write_bytes(bitmap)
+    (folder / "report.html").write_text(page(found, drawings), encoding="utf-8")
     for outcome in found.outcomes.values():
         for table in outcome.tables:
             (folder / "tables" / f"{table.name}.csv").write_text(as_csv(table), encoding="utf-8")
@@ -93,13 +94,15 @@ def write(found: Reproduction, folder: Path, progress: Progress = silent) -> Non
             (folder / name).rmdir()
 
 
-def page(found: Reproduction) -> str:
+def page(found: Reproduction, drawings: Mapping[str, str]) -> str:
     """Write the page.
 
     Parameters
     ----------
     found : Reproduction
         What was computed.
+    drawings : mapping of str to str
+        Name of a figure → SVG.
 
     Returns
     -------
@@ -107,7 +110,7 @@ def page(found: Reproduction) -> str:
         One HTML page without references to anything outside it.
     """
     claims = [key for key in found.outcomes if key.startswith("claim")]
-    others = [_item(key, found) for key in found.outcomes if key not in claims]
+    others = [_item(key, found, drawings) for key in found.outcomes if key not in claims]
     return rendered(
         "paper.html.j2",
         title="The moving FRF, reproduced",
@@ -116,7 +119,7 @@ def page(found: Reproduction) -> str:
         note=NOTE,
         claims=list(_lines(found, claims)),
         others=others,
-        items=[*others, *(_item(key, found) for key in claims)],
+        items=[*others, *(_item(key, found, drawings) for key in claims)],
         scenarios=[scenario(name) for name in SCENARIOS],
     )
 
@@ -155,7 +158,7 @@ def _statement(statement: Statement) -> dict[str, str]:
     return {**statement._asdict(), "kind": KINDS[statement.verdict]}
 
 
-def _item(key: str, found: Reproduction) -> dict[str, Any]:
+def _item(key: str, found: Reproduction, drawings: Mapping[str, str]) -> dict[str, Any]:
     outcome, item = found.outcomes[key], ITEMS[key]
     return {
         "name": name_of(key),
@@ -168,8 +171,10 @@ def _item(key: str, found: Reproduction) -> dict[str, Any]:
         "command": command_of(key, found.quick),
         "figures": [
             {
-                **illustrated(plot.name, plot.heading, plot.caption, plot.figure)._asdict(),
                 "name": plot.name,
+                "heading": plot.heading,
+                "caption": plot.caption,
+                "svg": inlined(drawings[plot.name], plot.name, plot.heading),
             }
             for plot in outcome.plots
         ],
