@@ -28,6 +28,12 @@ def test_the_readme_runs(capsys):
     assert 0.02 < coefficient < 0.5  # a stiff quarter truck on a class B road, 72 km/h
 
 
+def test_nothing_is_left_to_be_filled_in():
+    texts = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]
+    assert len(texts) > 4
+    assert not [file.name for file in texts if re.search(r"@@|TODO|FIXME|XXX", file.read_text(encoding="utf-8"))]
+
+
 def test_half_truck_example():
     found = loaded("half_truck").dynamic_load_coefficients()
     assert list(found) == [10.0, 15.0, 20.0]

