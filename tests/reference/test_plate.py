@@ -390,6 +390,16 @@ def test_a_plate_struck_as_in_the_paper():
     assert plain.critical_speed == pytest.approx(TRACK.critical_speed)
 
 
+@pytest.mark.parametrize("across", [0.0, 0.75])
+def test_waves_that_come_back_are_found_wherever_the_plate_is_struck(across):
+    """Beside the centre line the blow also turns the section, which must not hide what comes back."""
+    light = replace(undamped(3.0), foundation=mf.Spring(stiffness=3 * STIFFNESS, damping=9.0e4))
+    road = plate(light, width=3.0, element=0.5, across=2, ends="pinned")
+    with pytest.warns(mf.ValidityWarning) as caught:
+        strike([(0.0, across, across)], 10.0, road, time_step=1e-3, scheme="average_acceleration")
+    assert any("waves come back" in str(warning.message) for warning in caught)
+
+
 def test_four_plates_whose_end_reflections_cancel():
     """With one element across the same functions serve the waves: what remains is 40 m, 0.25 m and 0.25 ms.
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 import scipy.sparse as sparse
+from scipy.linalg import eigh
 
 import movingfrf as mf
-from tests.helpers import DAMPED, PAVEMENT, QUARTER_TRUCK, SOIL, TIMOSHENKO, VEHICLES
+from tests.helpers import DAMPED, FULL_TRUCK, PAVEMENT, QUARTER_TRUCK, SOIL, TIMOSHENKO, VEHICLES
 
 TRACK = DAMPED["euler_bernoulli_winkler"]
 FLAT = mf.Profile(np.linspace(-100.0, 500.0, 6), np.zeros(6))
@@ -313,6 +316,28 @@ def test_a_vehicle_too_stiff_for_a_scheme_of_limited_step():
     )
     with pytest.raises(ValueError, match="time_step must be at most"):
         drive(road, stiff, scheme="central_difference", time_step=8e-3, duration=0.4)
+
+
+def test_wheels_that_load_the_same_unknown_add_up():
+    """Four tyres on a road of one unknown: a step is refused where central differences grow, ω Δt = 2."""
+    road = mf.FiniteGuideway(
+        mass=[[1e3]],
+        damping=[[0.0]],
+        stiffness=[[1e4]],
+        interpolation=lambda x, derivative: np.full((x.size, 1), 1.0 - derivative),
+        interval=(-20.0, 40.0),
+    )
+    stiff = {"wheel_masses": (1e3, 1e3), "tyre_stiffness": (3e7, 3e7), "tyre_damping": (0.0, 0.0)}
+    car = mf.full_car(**(FULL_TRUCK | stiff))
+    mass, _, stiffness, contacts = car.matrices
+    tyres = np.hstack([contacts, -np.ones((4, 1))])
+    both = np.pad(stiffness, (0, 1)) + tyres.T * 3e7 @ tyres
+    both[-1, -1] += 1e4
+    highest = eigh(both, np.diag([*np.diag(mass), 1e3]), eigvals_only=True)[-1] ** 0.5
+    with pytest.raises(ValueError, match="time_step must be at most") as refused:
+        drive(road, car, scheme="central_difference", time_step=1.01 * 2 / highest, duration=0.4)
+    limit = float(re.search(r"at most ([\d.]+) s", str(refused.value)).group(1))
+    assert 0.8 * 2 / highest < limit < 1.001 * 2 / highest
 
 
 def test_forces_that_do_not_come_to_agree():

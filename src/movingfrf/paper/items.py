@@ -124,8 +124,8 @@ def reproduce(
 
     Examples
     --------
-    >>> found = reproduce(["7"], quick=True)
-    >>> found.outcomes["7"].statements[0].verdict
+    >>> found = reproduce(["claim1"], quick=True)
+    >>> found.outcomes["claim1"].statements[0].verdict
     'holds'
     """
     keys = chosen(only)

@@ -194,7 +194,7 @@ def moving_impulse_response(
     found = [
         *_undecayed(response, steps * time_step),
         *_stretched(band, time_step),
-        *_reflected(several, row, time_step, (strike, float(sources[0])), steps, band, compiled, progress),
+        *_reflected(several, row, time_step, strike, steps, band, compiled, progress),
     ]
     for message in found:
         warnings.warn(message, ValidityWarning, stacklevel=2)
@@ -363,7 +363,7 @@ def _reflected(
     roads: Sequence[FiniteGuideway],
     scheme: Scheme,
     time_step: float,
-    struck: tuple[float, float],
+    strike: float,
     steps: int,
     band: float,
     compiled: bool | None,
@@ -380,10 +380,10 @@ def _reflected(
     first, last = road.interval
     outer = OUTER * (last - first)
     ends = np.concatenate([np.linspace(first, first + outer, POINTS), np.linspace(last - outer, last, POINTS)])
-    strike, across = struck
     middles = 0.5 * (strike + np.array([first, last]))
     points = np.concatenate([[strike], middles, ends])
-    blow = Blow(strike, across, 0.0, points, across)
+    # On the centre line, where no roll adds to what the blow itself brings about.
+    blow = Blow(strike, 0.0, 0.0, points, 0.0)
     records = _ringing(road, scheme, time_step, blow, steps, compiled, progress)
     numbers = np.arange(float(points.size))
     omega = 2 * np.pi * np.linspace(0.0, band, FREQUENCIES)

@@ -156,7 +156,7 @@ def require_stable_scheme(
     highest, what = _highest(road), "the road's elements"
     if vehicle is not None:
         # No vibration of the two together is faster than this: stiffnesses add, and so do squares of frequencies.
-        springs = max(contact.stiffness for contact in vehicle.contacts)
+        springs = sum(contact.stiffness for contact in vehicle.contacts)
         along, across = np.meshgrid(np.linspace(*road.interval, PLACES), np.unique(vehicle.across))
         rows = road.rows(along.ravel(), 0, across.ravel()).toarray()
         moved = float(np.einsum("pd,dp->p", rows, solver(road.mass).solve(rows.T)).max())
