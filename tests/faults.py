@@ -28,6 +28,7 @@ SELECTION = [
     "tests/laws/test_coupled.py",
     "tests/laws/test_guideways.py",
     "tests/laws/test_properties.py",
+    "tests/laws/test_truncation.py",
 ]
 
 # These first where the fault lies in the independent way, and last otherwise.
@@ -101,6 +102,16 @@ FAULTS = [
         "spectral.py",
         "int(share * self.truncation * self",
         "int(share * self.truncation / 6.283 * self",
+    ),
+    Fault("truncation that cuts sharply", "spectral.py", "STIFFENING = 0.05", "STIFFENING = 1e-6"),
+    Fault(
+        "road that does not stiffen",
+        "coupling.py",
+        "frf * grid.compliance(slice(first, first + kept))[:, None, None]",
+        "frf * 1.0",
+    ),
+    Fault(
+        "load's road that does not fade", "simulation.py", "frf * grid.compliance(some)[:, None, None]", "frf * 1.0"
     ),
     Fault("whole weight at the start", "spectral.py", "padded[:, 0] *= 0.5", "padded[:, 0] *= 1.0"),
     Fault(

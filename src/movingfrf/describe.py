@@ -64,20 +64,24 @@ def _vehicle(scenario: Scenario) -> list[tuple[str, str]]:
 
 def _roughness(profile: Profile, description: str) -> list[tuple[str, str]]:
     stations = profile.stations
-    elevation = np.asarray(profile.elevation).reshape(stations.size, -1)[:, 0]
+    elevation = np.asarray(profile.elevation)
     lines = [
         ("source", description),
         ("stations", f"{stations.size} from {stations[0]:.6g} m to {stations[-1]:.6g} m"),
         ("elevation", f"{elevation.min():.4g} m to {elevation.max():.4g} m"),
     ]
     step = float(np.median(np.diff(stations)))
-    uniform = profile.along()(np.arange(stations[0], stations[-1], step))
-    spectrum = welch(uniform, step)
-    roughness, waviness = fit_iso(*spectrum)
-    if np.isfinite(roughness):
-        at_two, _ = fit_iso(*spectrum, waviness=2.0)
-        lines.append(("fitted spectrum", f"{roughness:.3g} m³ at 0.1 cycle/m with waviness {waviness:.2f}"))
-        lines.append(("ISO 8608 class", f"{iso_class(at_two)} ({at_two:.3g} m³ at 0.1 cycle/m with waviness 2)"))
+    for path in range(profile.paths):
+        uniform = profile.along(path)(np.arange(stations[0], stations[-1], step))
+        spectrum = welch(uniform, step)
+        roughness, waviness = fit_iso(*spectrum)
+        if np.isfinite(roughness):
+            at_two, _ = fit_iso(*spectrum, waviness=2.0)
+            of = f" of path {path}" if profile.paths > 1 else ""
+            lines += [
+                (f"fitted spectrum{of}", f"{roughness:.3g} m³ at 0.1 cycle/m with waviness {waviness:.2f}"),
+                (f"ISO 8608 class{of}", f"{iso_class(at_two)} ({at_two:.3g} m³ at 0.1 cycle/m with waviness 2)"),
+            ]
     return lines
 
 
