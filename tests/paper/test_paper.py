@@ -245,20 +245,17 @@ def test_equal_runs_give_equal_files(tmp_path):
         assert (tmp_path / "first" / file).read_bytes() == (tmp_path / "second" / file).read_bytes()
 
 
-def test_ctrl_c_leaves_nothing(tmp_path):
+@pytest.mark.parametrize(("told", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_ended_early_it_leaves_nothing(told, status, tmp_path):
     command = [sys.executable, "-m", "movingfrf", "paper", "--only", "claim4", "--output", str(tmp_path / "out")]
-    running = subprocess.Popen(
-        command,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 60
     while not list((tmp_path / "out").glob(".partial-*")) and time.monotonic() < deadline:
         time.sleep(0.05)
-    running.send_signal(signal.SIGINT)
+    running.send_signal(told)
     _, said = running.communicate(timeout=60)
-    assert running.returncode == 130
-    assert "interrupted" in said
+    assert running.returncode == status
+    assert ("interrupted" in said) == (told == signal.SIGINT)
     assert not (tmp_path / "out").exists()
 
 
