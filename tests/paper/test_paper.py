@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -265,6 +266,23 @@ def test_progress_names_the_item():
     assert len(told) > 5
     assert all(stage.startswith("1/1 Item 1") for stage, _ in told)
     assert all(0 <= fraction <= 1 for _, fraction in told)
+
+
+TEXT = Path(__file__).parents[3] / "shared" / "paper" / "seed.txt"
+
+
+@pytest.mark.skipif(not TEXT.exists(), reason="the text of the paper is not there")
+def test_quotation_marks_hold_the_papers_own_words(items):
+    def plain(text):
+        for sign, typed in (("–", "-"), ("−", "-"), ("⁻", "-"), ("⁴", "4")):
+            text = text.replace(sign, typed)
+        return " ".join(text.split()).lower()
+
+    paper = plain(TEXT.read_text(encoding="utf-8"))
+    stated = [statement["stated"] for item in items.values() for statement in item["statements"]]
+    quoted = [part for text in stated for quote in re.findall(r'"([^"]+)"', text) for part in quote.split("…")]
+    assert len(quoted) > 15
+    assert not [part for part in quoted if plain(part).strip(" .,") not in paper]
 
 
 # Parts.

@@ -62,7 +62,7 @@ def time_invariant(study: Study) -> Outcome:
         statements=[
             Statement(
                 '"The time-variant system can be converted into time-invariant system"; "the time-domain '
-                'convolution is decoupled and represented in frequency domain as a simple product".',
+                'convolution … is decoupled and represented in frequency domain as a simple product".',
                 f"Struck {PLACES[1] - PLACES[0]:g} m further on, between two nodes, the road gives the same "
                 f"moving FRF below {TRUNCATION:g} Hz within {number(moved, 1)} of its largest value (the accuracy "
                 "of the elements); for a point that stands still the same two blows differ by "
@@ -219,7 +219,7 @@ def left_open(study: Study) -> Outcome:
     return Outcome(
         statements=[
             Statement(
-                'The paper leaves open "nonlinear analysis of the vehicle–road system" and its "stochastic and '
+                'The paper leaves open "nonlinear analysis of vehicle–road system" and its "stochastic and '
                 'nonlinear characteristics".',
                 "So does this reproduction: nothing of it is computed here. What random roughness does to a "
                 "linear vehicle follows from the same transfer functions; nonlinear contacts need an iteration "
