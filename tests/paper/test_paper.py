@@ -185,6 +185,7 @@ def test_every_figure_and_table_is_a_file(folder, items):
         head, *rows = read(file)
         assert rows
         assert all(len(row) == len(head) for row in rows)
+        assert len(set(head)) == len(head), "columns that cannot be told apart"
 
 
 def test_the_table_holds_what_the_numbers_say(folder, numbers):

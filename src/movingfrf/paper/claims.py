@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from movingfrf.comparison import TARGETS
 from movingfrf.methods import Case, elements
 from movingfrf.page import Column
 from movingfrf.paper import operations
@@ -13,7 +14,7 @@ from movingfrf.paper.load import LOAD
 from movingfrf.paper.outcome import UNJUDGED, DataTable, Outcome, Statement, verdict
 from movingfrf.paper.road import BAND, SUBSTITUTE
 from movingfrf.paper.study import TRUNCATION, Study, quiet, relative, scenario
-from movingfrf.paper.vehicle import EQUAL, NAMES, ROUGHNESS, VEHICLE
+from movingfrf.paper.vehicle import NAMES, ROUGHNESS, VEHICLE
 from movingfrf.reference.duhamel import duhamel_loads
 from movingfrf.reference.finite_guideway import finite_track
 from movingfrf.reference.impulse import CANCELLING, moving_impulse_response
@@ -104,7 +105,7 @@ def cheaper(study: Study) -> Outcome:
         + (len(vehicle.contacts) + channels) * operations.real_fft(grid.padded),
     )
     words = " ".join(_at_equal_error(target, found) for target, found in equal.items())
-    finest = equal[min(EQUAL)]
+    finest = equal[min(TARGETS)]
     ratio = min(finest["cdfm"], finest["sim"]) / finest["moving-frf"]
     return Outcome(
         statements=[
@@ -150,7 +151,7 @@ def cheaper(study: Study) -> Outcome:
                     for target in equal
                     for column in (
                         Column(f"to {number(target, 1)}", "s"),
-                        *(Column(f"over {SHORT[ours]}", "") for ours in OURS),
+                        *(Column(f"to {number(target, 1)}, over {SHORT[ours]}", "") for ours in OURS),
                     )
                 ],
                 [

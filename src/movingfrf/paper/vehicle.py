@@ -9,6 +9,7 @@ import numpy as np
 
 from movingfrf import plots
 from movingfrf._checks import FloatArray
+from movingfrf.comparison import TARGETS
 from movingfrf.methods import elements
 from movingfrf.page import Column
 from movingfrf.paper.drawing import (
@@ -55,9 +56,6 @@ ONE_CURVE = 1e-2
 
 # The times that the paper gives for its last table, on its authors' computer [s].
 STATED = {"cdfm": 1610.0, "sim": 686.0, "moving-frf": 5.9}
-
-# Equal errors at which times are compared.
-EQUAL = (1e-3, 1e-4)
 
 # What the methods are called in the paper's last table.
 NAMES = {
@@ -446,7 +444,7 @@ def _dense_step(unknowns: int) -> float:
 
 def _error_over_time(study: Study) -> Figure:
     figure, (ax,) = canvas(1, 1, 4.2)
-    for target in EQUAL:
+    for target in TARGETS:
         ax.axhline(target, color=plots.GREY, linestyle=":", linewidth=0.8)
     lines: dict[str, dict[float, list[tuple[float, float]]]] = {}
     for point in study.compared.curve:
