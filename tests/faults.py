@@ -29,7 +29,12 @@ SELECTION = [
     "tests/laws/test_guideways.py",
     "tests/laws/test_properties.py",
     "tests/laws/test_truncation.py",
+    "tests/laws/test_random.py",
+    "tests/test_roads.py",
 ]
+
+# These first where the fault lies in files of profiles, what is done to them and what is said of them.
+PROFILES = ["tests/test_preparation.py", "tests/test_readers.py", "tests/test_profile_description.py"]
 
 # These first where the fault lies in the independent way, and last otherwise.
 REFERENCE = [
@@ -127,8 +132,8 @@ FAULTS = [
     Fault(
         "beyond the truncation nothing moves",
         "coupling.py",
-        "        springs = vehicle.contact_stiffness(omega)\n",
-        "        displacement[kept:] = 0.0\n        springs = vehicle.contact_stiffness(omega)\n",
+        "        motion[first:last], force",
+        "        displacement[kept:] = 0.0\n        motion[first:last], force",
     ),
     Fault("deflection lifts the vehicle", "coupling.py", "displacement[:kept] +=", "displacement[:kept] -="),
     Fault(
@@ -139,27 +144,63 @@ FAULTS = [
     ),
     Fault("steady basin reversed", "coupling.py", "deflection=frf @ load", "deflection=frf.T @ load"),
     Fault("static sag missing", "simulation.py", "deflection += steady.deflection", "pass"),
-    Fault("footprint twice as long", "simulation.py", "/ (2 * speed)", "/ speed"),
+    Fault("footprint twice as long", "vehicles/contact.py", "half = 0.5 *", "half = 1.0 *"),
+    Fault("cams twice as far apart", "vehicles/contact.py", "0.5 * self.cams", "1.0 * self.cams"),
+    Fault("enveloping left out", "simulation.py", "if contact.envelops]", "if False]"),
+    Fault("stability: the arc left out", "stability.py", "if not np.isinf(vehicle.springs).any():", "if True:"),
     Fault("unstable taken for stable", "stability.py", "round(-float(turned)", "round(float(turned)"),
-    Fault("stability not looked at", "stability.py", "if growing_vibrations(system, along_axis):", "if False:"),
+    Fault("stability not looked at", "stability.py", "    if growing:\n", "    if False:\n"),
     # Vehicle.
     Fault("gravity", "vehicles/base.py", "GRAVITY = 9.81", "GRAVITY = 9.80665"),
+    Fault("tyre damping missing", "vehicles/dynamics.py", "np.diag(dashpots)", "0.0 * np.diag(dashpots)"),
     Fault(
-        "tyre damping missing",
-        "vehicles/base.py",
-        "[contact.damping for contact in self.contacts] @",
-        "[0.0 for contact in self.contacts] @",
+        "inertia sign", "vehicles/dynamics.py", "(self.linear + s * self.square)", "(self.linear - s * self.square)"
     ),
-    Fault("tyre damping in the force only", "vehicles/base.py", "(1j * omega) * damping", "(0j * omega) * damping"),
-    Fault("inertia sign", "vehicles/base.py", "i_omega * i_omega * self", "-i_omega * i_omega * self"),
-    Fault("contact map", "vehicles/road.py", "[[0, 0, 1, 0], [0, 0, 0, 1]]", "[[0, 0, 0, 1], [0, 0, 1, 0]]"),
+    Fault("rigid motion turned", "vehicles/dynamics.py", "free[bound] = -inverse", "free[bound] = inverse"),
+    Fault(
+        "inertia above rigid contacts missing",
+        "vehicles/dynamics.py",
+        ".T + prescribed.T @ a @ prescribed",
+        ".T + 0.0 * prescribed.T @ a @ prescribed",
+    ),
+    Fault(
+        "force on the vehicle for that on the road",
+        "vehicles/dynamics.py",
+        "force -= self.direct",
+        "force += self.direct",
+    ),
+    Fault("weight above rigid contacts missing", "vehicles/base.py", "(self.weights - impedance", "(-impedance"),
+    Fault(
+        "tipping vehicles accepted",
+        "vehicles/base.py",
+        "np.flatnonzero(~(loads > 0))",
+        "np.flatnonzero(loads != loads)",
+    ),
     Fault(
         "nose up",
-        "vehicles/road.py",
-        "def suspension(at_front: float, at_rear: float)",
-        "def suspension(at_front, at_rear, front=-front, rear=-rear)",
+        "vehicles/assembly.py",
+        "(position - self.position, self.pitch_inertia)",
+        "(self.position - position, self.pitch_inertia)",
     ),
-    Fault("wheels weightless", "vehicles/road.py", "vertical=[1, 0, 1, 1]", "vertical=[1, 0, 0, 0]"),
+    Fault(
+        "right side down",
+        "vehicles/assembly.py",
+        "(across - self.across, self.roll_inertia)",
+        "(self.across - across, self.roll_inertia)",
+    ),
+    Fault(
+        "wheels weightless",
+        "vehicles/assembly.py",
+        "self.downward.add(body.dof_names[0])",
+        "self.downward.update(body.dof_names[:1] if n == 0 else [])",
+    ),
+    Fault("hitch turned", "vehicles/assembly.py", "free[given_up] = -np.linalg", "free[given_up] = np.linalg"),
+    Fault("dampers left out", "vehicles/assembly.py", "suspension.damping * square", "0.0 * square"),
+    Fault("convoy ahead of itself", "vehicles/combined.py", "behind = -np.concatenate", "behind = np.concatenate"),
+    Fault("both seats on the floor", "vehicles/combined.py", "        below = above\n", ""),
+    Fault("half a wheel on each side", "vehicles/truck.py", "(0.5, sides[1], 1", "(1.0, sides[1], 1"),
+    Fault("Hertz' exponent", "vehicles/rail.py", "1.5 / constant", "1.0 / constant"),
+    Fault("rear bogie ahead", "vehicles/rail.py", '"bogie_2": -0.5 * apart', '"bogie_2": 0.6 * apart'),
     Fault("contacts transposed", "vehicles/base.py", "ahead[:, None] - ahead", "ahead - ahead[:, None]"),
     Fault("left and right transposed", "vehicles/base.py", "across[:, None] - across", "across - across[:, None]"),
     Fault(
@@ -168,15 +209,137 @@ FAULTS = [
         "np.broadcast_to(across, offsets",
         "np.broadcast_to(across[:, None], offsets",
     ),
-    Fault("right side down", "vehicles/road.py", "along[axle], aside[side], 0.0", "along[axle], -aside[side], 0.0"),
     Fault("paths exchanged", "vehicles/road.py", "path=side", "path=1 - side"),
-    Fault("wheels exchanged across", "vehicles/road.py", "across=aside[side]", "across=aside[1 - side]"),
+    Fault(
+        "wheels exchanged across",
+        "vehicles/road.py",
+        "path=side,\n                across=aside[side]",
+        "path=side,\n                across=aside[1 - side]",
+    ),
     # Road.
-    Fault("two-sided density", "roughness/profiles.py", "np.sqrt(variance / 2)", "np.sqrt(variance)"),
+    Fault("two-sided density", "roughness/realisation.py", "np.sqrt(variance / 2)", "np.sqrt(variance)"),
     Fault("arithmetic class centres", "roughness/spectra.py", "16e-6 * 4.0**n", "20e-6 * 4.0**n"),
     Fault("limits at the centres", "roughness/spectra.py", "roughness < 2 * centre", "roughness < centre"),
-    Fault("waviness ignored", "roughness/spectra.py", "power = 1 - self.waviness", "power = 1 - 2.0"),
-    Fault("seed ignored", "roughness/profiles.py", "default_rng(number)", "default_rng(0)"),
+    Fault(
+        "waviness ignored",
+        "roughness/spectra.py",
+        "power = 1 - np.asarray(exponent, float)",
+        "power = np.array(-1.0)",
+    ),
+    Fault(
+        "variance from zero on",
+        "roughness/spectra.py",
+        "self._integral(self.band[0],",
+        "self._integral(0.5 * self.band[0],",
+    ),
+    Fault(
+        "content beside the band",
+        "roughness/spectra.py",
+        "np.where(n == spatial_frequency, self._formula(n), 0.0)",
+        "self._formula(n)",
+    ),
+    Fault(
+        "per radian",
+        "roughness/rail_spectra.py",
+        "FRA_CORNER**2 / (2 * np.pi) ** 3",
+        "FRA_CORNER**2 / (2 * np.pi) ** 2",
+    ),
+    Fault(
+        "German per radian",
+        "roughness/rail_spectra.py",
+        "return self.roughness / (2 * np.pi) * c**2",
+        "return self.roughness * c**2",
+    ),
+    Fault("cubic centimetres", "roughness/rail_spectra.py", "3.9488e-4]) * 1e-6", "3.9488e-4]) * 1e-4"),
+    Fault("pieces without an end", "roughness/rail_spectra.py", "np.array([*CHINESE_BREAKS, np.inf])", "np.inf"),
+    Fault("partial fraction", "roughness/rail_spectra.py", "b**2 / 3 * (low", "b**2 * (low"),
+    Fault(
+        "level of an amplitude",
+        "roughness/tabulated.py",
+        "REFERENCE**2 * 10 ** (np.asarray(self.level)[order] / 10)",
+        "REFERENCE**2 * 10 ** (np.asarray(self.level)[order] / 20)",
+    ),
+    Fault(
+        "levels in the order given",
+        "roughness/tabulated.py",
+        "order = np.argsort(-np.asarray(self.wavelength))",
+        "order = np.arange(np.size(self.wavelength))",
+    ),
+    Fault(
+        "table straight in density",
+        "roughness/tabulated.py",
+        "np.interp(np.log(n), np.log(knots), np.log(values))",
+        "np.log(np.interp(n, knots, values))",
+    ),
+    # Paths, distributions, shapes.
+    Fault("coherence over half of the distance", "roughness/coherence.py", "z = 2 * np.pi * np", "z = np.pi * np"),
+    Fault(
+        "waviness for the order",
+        "roughness/coherence.py",
+        "order = self.waviness / 2",
+        "order = self.waviness / 2.5",
+    ),
+    Fault(
+        "paths without an own part",
+        "roughness/realisation.py",
+        "own = rest[:, :1] > SMALLEST_PIVOT",
+        "own = rest[:, :1] > 0.9",
+    ),
+    Fault(
+        "coherence squared in realisations",
+        "roughness/realisation.py",
+        "rest = matrix[:, j:, j] -",
+        "rest = matrix[:, j:, j] ** 2 -",
+    ),
+    Fault(
+        "spread of a Laplace road",
+        "roughness/realisation.py",
+        "spread = kurtosis / 3 - 1",
+        "spread = kurtosis / 6 - 0.5",
+    ),
+    Fault(
+        "Laplace road half as rough",
+        "roughness/realisation.py",
+        "rng.gamma(1 / spread, spread,",
+        "rng.gamma(1 / spread, spread / 2,",
+    ),
+    Fault("segments of a step", "roughness/realisation.py", "* (step / segment) *", "*"),
+    Fault(
+        "a flat lifts the wheel",
+        "roughness/irregularities.py",
+        "elevation = -(np.maximum(chord / 2",
+        "elevation = (np.maximum(chord / 2",
+    ),
+    Fault("flat once per diameter", "roughness/irregularities.py", "at, 2 * np.pi * radius))", "at, 2 * radius))"),
+    Fault("pothole that rises", "roughness/irregularities.py", "-depth * smooth_step(", "depth * smooth_step("),
+    Fault(
+        "weld twice as deep",
+        "roughness/irregularities.py",
+        "d * np.cos(np.pi * np.clip(",
+        "2 * d * np.cos(np.pi * np.clip(",
+    ),
+    Fault(
+        "joints that do not bend",
+        "roughness/irregularities.py",
+        "1 - away / reach, 0.0) ** 2",
+        "1 - away / reach, 0.0)",
+    ),
+    Fault("wheel that falls into a gap", "roughness/combination.py", "relief = min(", "relief = 0.5 * min("),
+    Fault(
+        "sum on the first grid",
+        "roughness/combination.py",
+        "[profile.stations for profile in profiles]))",
+        "[profile.stations for profile in profiles[:1]]))",
+    ),
+    Fault("shape that starts at zero", "roads.py", "last - first, start=first, **given)", "last - first, **given)"),
+    Fault("strangers taken for one path", "roads.py", "return 0.0 if different", "return 1.0 if different"),
+    Fault(
+        "surface without a coherence",
+        "roads.py",
+        "return coherence if coherence is not None else presumed(spectrum)",
+        "return coherence",
+    ),
+    Fault("seed ignored", "roughness/realisation.py", "default_rng(number)", "default_rng(0)"),
     Fault("second path is the first", "roughness/profiles.py", "elevation[:, path]", "elevation[:, 0]"),
     Fault("datum left in", "roughness/excitation.py", "seen -= datums[path]", "pass"),
     Fault("blend twice as long", "roughness/excitation.py", "- foremost) / blend", "- foremost) / (2 * blend)"),
@@ -438,6 +601,154 @@ FAULTS = [
     Fault("plain: backward differences", "reference/duhamel.py", "(1.5, -2.0, 0.5)", "(1.5, -2.0, -0.5)"),
     Fault("backward differences", "reference/compiled.py", "a, b, c = 1.5, -2.0, 0.5", "a, b, c = 1.5, -2.0, -0.5"),
     Fault("oldest force first", "reference/duhamel.py", "kernel[:, :, :0:-1]", "kernel[:, :, 1:]"),
+    # Random roads.
+    Fault(
+        "rear wheel first", "random_vibration.py", "np.exp(2j * np.pi * np.outer", "np.exp(-2j * np.pi * np.outer"
+    ),
+    Fault(
+        "density over the road",
+        "random_vibration.py",
+        "self.spectrum.density(n) / self.speed",
+        "self.spectrum.density(n)",
+    ),
+    Fault("coherence squared", "random_vibration.py", "vectors * np.sqrt(np.maximum", "vectors * (np.maximum"),
+    Fault("impossible coherence", "random_vibration.py", "SEMIDEFINITE = 1e-9", "SEMIDEFINITE = 1e9"),
+    Fault(
+        "random: velocity for acceleration", "random_vibration.py", "omega[:, None] ** 4 *", "omega[:, None] ** 2 *"
+    ),
+    Fault("rounding moves", "random_vibration.py", "ROUNDING = 1e-20", "ROUNDING = 1e-60"),
+    Fault(
+        "crossings by the fourth moment", "random_vibration.py", "_rate(second, variance)", "_rate(fourth, second)"
+    ),
+    Fault("lift-offs too rare", "random_vibration.py", "(crossing) * np.exp(-0.5", "(crossing) * np.exp(-1.0"),
+    Fault("lift-offs unseen", "random_vibration.py", "if often > LIFT_OFFS or part", "if False and part"),
+    Fault("end of the band unseen", "random_vibration.py", "if share <= AT_THE_END:", "if share >= 0:"),
+    Fault("weighting of amplitudes", "random_vibration.py", "lines.frequency)) ** 2", "lines.frequency))"),
+    Fault(
+        "first level counted too often",
+        "random_vibration.py",
+        "- 0.5 * exceeded[..., 0]",
+        "+ 50 * exceeded[..., 0]",
+    ),
+    Fault("wide trapezoids", "random_measures.py", "(0.5 * (gaps[1:]", "(1.0 * (gaps[1:]"),
+    Fault("coarse panels", "quadrature.py", "UNRESOLVED = 1e-3", "UNRESOLVED = 1e3"),
+    Fault("panels that overlap", "quadrature.py", "= low[~rough], high", "= low[~rough] - 0.01, high"),
+    Fault(
+        "road that lifts the vehicle twice", "transfers.py", "[some] - roughness[some]", "[some] + roughness[some]"
+    ),
+    Fault(
+        "acceleration along the motion",
+        "transfers.py",
+        "-(omega[:, None, None] ** 2)",
+        "(omega[:, None, None] ** 2)",
+    ),
+    # Measures.
+    Fault(
+        "rounded window of the IRI",
+        "metrics/iri.py",
+        "missing = int(np.ceil((window - 1) / 2 - 1e-6)) - 1, (window**2 - 1) / 12",
+        "missing = int(np.ceil((window - 1) / 2 - 1e-6)) - 1, (round(window) ** 2 - 1) / 12",
+    ),
+    Fault("average counted twice", "metrics/iri.py", "(window**2 - 1) / 12", "window**2 / 12"),
+    Fault("car starts level", "metrics/iri.py", "zi=[-keep * gain * start]", "zi=[0.0 * gain]"),
+    Fault("one mode of the golden car", "metrics/iri.py", "found += 2 * driven.real", "found = 2 * driven.real"),
+    Fault(
+        "ride number of the mean path",
+        "metrics/iri.py",
+        "np.sqrt(square.mean(axis=1))",
+        "np.sqrt(square).mean(axis=1)",
+    ),
+    Fault("segments one step late", "metrics/iri.py", "bounds - half, 0", "bounds - half + 1, 0"),
+    Fault("step of a weighting turned", "metrics/comfort.py", "* (f5 / f6) ** 2", "* (f6 / f5) ** 2"),
+    Fault("transition without its zero", "metrics/comfort.py", "(1 + p / (2 * np.pi * first))", "1"),
+    Fault(
+        "weighting wraps around",
+        "metrics/comfort.py",
+        "len(values) + int(np.ceil(memory / time_step))",
+        "len(values)",
+    ),
+    Fault(
+        "dose of squares",
+        "metrics/comfort.py",
+        "** 4, axis=0) * time_step) ** 0.25",
+        "** 2, axis=0) * time_step) ** 0.25",
+    ),
+    Fault(
+        "running rms of a mean",
+        "metrics/comfort.py",
+        "np.arange(1, len(energy)) - steps, 0)",
+        "np.arange(1, len(energy)) - 2 * steps, 0)",
+    ),
+    Fault("rear axle first", "metrics/loads.py", "(points - start) / speed", "(points + start) / speed"),
+    Fault(
+        "static load forgotten", "metrics/loads.py", "force = static[contact] + CubicSpline", "force = CubicSpline"
+    ),
+    Fault("tension wears", "metrics/loads.py", "np.maximum(force, 0.0) ** power", "np.abs(force) ** power"),
+    Fault("paths added up", "metrics/loads.py", "np.searchsorted(numbers, paths[contact])", "0 * paths[contact]"),
+    Fault(
+        "repeatability of the mean",
+        "metrics/loads.py",
+        "other - other.mean(axis=0)",
+        "other - 0.0 * other.mean(axis=0)",
+    ),
+    Fault(
+        "ranges for amplitudes",
+        "metrics/fatigue.py",
+        "np.abs(ends[:, 1] - ends[:, 0]) / 2",
+        "np.abs(ends[:, 1] - ends[:, 0])",
+    ),
+    Fault(
+        "open cycles lost",
+        "metrics/fatigue.py",
+        "for pairs in (closed, fatpack.find_rainflow_cycles(again)[0])",
+        "for pairs in (closed,)",
+    ),
+    Fault(
+        "variance for deviation", "metrics/fatigue.py", "variance ** (slope / 2) / life", "variance**slope / life"
+    ),
+    Fault("falling through a level", "metrics/fatigue.py", "np.diff(history) > 0", "np.diff(history) < 0"),
+    Fault(
+        "accelerance with the wrong sign",
+        "metrics/guideway.py",
+        "(1j * omega[:, None]) ** power",
+        "omega[:, None] ** power",
+    ),
+    Fault("decay rate: half a step at the end", "metrics/guideway.py", "/ 2, steps[-1:]]", "/ 2, steps[-1:] / 2]"),
+    Fault(
+        "decay of the nearest wave",
+        "metrics/guideway.py",
+        "np.abs(kappa.imag).min(axis=0)",
+        "np.abs(kappa.imag).max(axis=0)",
+    ),
+    # Profiles from files.
+    Fault("units not converted", "roughness/formats/base.py", "else values * scale", "else values"),
+    Fault("decimal comma taken for none", "roughness/formats/columns.py", "decimal=layout.decimal", 'decimal="."'),
+    Fault("right for left in a grid", "roughness/formats/crg.py", "road.surface_z()[:, ::-1]", "road.surface_z()"),
+    Fault("slope and banking left out", "roughness/formats/crg.py", "road.surface_z()[", "road.z["),
+    Fault("first path of an ERD file twice", "roughness/formats/erd.py", "values[:, n]", "values[:, 0]"),
+    Fault("sphere for the ellipsoid", "roughness/formats/gpx.py", "6.694_379_990_141e-3", "0.0"),
+    Fault("rows for columns", "matlab_file.py", 'reshape(shape, order="F")', "reshape(shape)"),
+    Fault("packed bombs let in", "matlab_file.py", "most or limit)", "most or 0)"),
+    Fault("paths between sections", "roughness/files.py", "rights + share * (lefts - rights)", "rights"),
+    Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
+    Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
+    Fault("high pass of first order", "roughness/preparation.py", "butter(GENTLE, 1 /", "butter(1, 1 /"),
+    Fault(
+        "resampled with aliases",
+        "roughness/preparation.py",
+        "if step > old * (1 + 1e-6):",
+        "if step > old * (1 + 1e6):",
+    ),
+    Fault("spikes left in", "roughness/preparation.py", "column[out] = np.interp", "_ = np.interp"),
+    Fault("mirror doubles its end", "roughness/preparation.py", "% (2 * last) - last", "% (2 * last + 1) - last"),
+    Fault("steps forgotten", "roughness/preparation.py", "steps=(*profile.steps, sentence)", "steps=(sentence,)"),
+    Fault("trend left in the spectrum", "profile_description.py", "piece -= np.outer", "_ = np.outer"),
+    Fault(
+        "coherence of amplitudes", "profile_description.py", "(real**2 + imaginary**2)", "np.hypot(real, imaginary)"
+    ),
+    Fault(
+        "edges counted with spikes", "profile_description.py", "np.flatnonzero(peak & (bend", "np.flatnonzero((bend"
+    ),
 ]
 
 
@@ -445,6 +756,8 @@ def selection(fault: Fault | None) -> list[str]:
     """List what runs against a fault: first the tests that lie next to it."""
     file = fault.file if fault else ""
     independent = file.startswith(("reference/", "guideways/sampled"))
+    if file.startswith(("roughness/fi", "roughness/formats", "roughness/preparation", "profile_")):
+        return PROFILES + SELECTION + REFERENCE
     chosen = REFERENCE + SELECTION if independent else SELECTION + REFERENCE
     return sorted(chosen, key=lambda tests: "plate" not in tests) if "plate" in file else chosen
 

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
+from movingfrf.scenario import parse_scenario
 
 ROOT = Path(__file__).parents[1]
 PAVED_ROAD = ROOT.parent / "shared" / "data" / "utia_profile.txt"
+BELGIAN_BLOCK = PAVED_ROAD.with_name("belgian_block.crg")
 
 
 def loaded(name):
@@ -72,3 +74,54 @@ def test_wide_road_example():
     apart = np.linalg.norm(found - stepped, axis=0) / np.linalg.norm(stepped, axis=0)
     assert (apart < 2e-3).all()  # steps of 1 ms, content to 40 Hz: (ω Δt)²/12 is 5e-3 there, less below
     assert np.abs(np.corrcoef(found.T)[0, 1]) < 0.3
+
+
+def test_random_road_example():
+    """The closed form against one minute over one road: some 100 waves of the body, so within 20 %."""
+    example = loaded("random_road")
+    every, one = example.all_roads(20.0), example.one_road(20.0, seed=1)
+    forces = one.contact_force.std("time").values / every.contact_force_rms.values
+    bounce = one.acceleration.std("time").values / every.acceleration_rms.values
+    assert np.abs(np.concatenate([forces, bounce]) - 1).max() < 0.2
+    assert 0.05 < every.dynamic_load_coefficient.values.min() < every.dynamic_load_coefficient.values.max() < 0.3
+
+
+def test_rough_stretches_example():
+    """Kurtosis 3 E V² of the force; 600 stretches leave E V² uncertain by 2.3/√600, or 6 %, and E V by 3 %."""
+    found = loaded("rough_stretches").moments()
+    assert found["even"][1] == pytest.approx(3.0, abs=0.1)
+    assert found["varying"][1] == pytest.approx(4.5, rel=0.15)
+    assert found["varying"][0] == pytest.approx(found["even"][0], rel=0.06)
+
+
+def test_semitrailer_example():
+    """Walking beams without dampers of their own are known for the highest dynamic loads (Cebon 1999)."""
+    example = loaded("semitrailer")
+    apart, together = (
+        mf.dynamic_load_coefficient(example.drive(example.vehicle(walking_beam=beam))) for beam in (False, True)
+    )
+    assert (apart < 0.1).all()
+    assert (together[3:] > 2 * apart[3:]).all()
+    np.testing.assert_allclose(together[:3], apart[:3], rtol=0.05)
+
+
+def test_train_example():
+    """A tenth of its way: every coach carries its share, and the first bogies feel the track first."""
+    text = (ROOT / "examples" / "train.toml").read_text(encoding="utf-8")
+    short = text.replace("duration = 12.5 ", "duration = 1.25 ").replace("count = 16", "count = 4")
+    result = parse_scenario(short).run()
+    np.testing.assert_allclose(result.static_load.sum(), 4 * 9.81 * (47_800 + 2 * 3500 + 4 * 1800), rtol=1e-6)
+
+
+@pytest.mark.skipif(not BELGIAN_BLOCK.exists(), reason=f"the measured surface {BELGIAN_BLOCK.name} is not there")
+def test_belgian_block_example():
+    """The paths of the surface have 24 and 23 mm, as its file's description says; a quarter of the car at rest."""
+    told = "\n".join(loaded("belgian_block").told(BELGIAN_BLOCK))
+    assert "mirrored forth and back 12 times to 120 m" in told
+    assert "Elevation 23.5 mm root mean square, at 30 km/h." in told
+    assert f"{(1400 * 1.4 / 2.7 / 2 + 40) * 9.81e-3:.1f} kN at rest" in told
+
+
+def test_belgian_block_without_its_surface(tmp_path):
+    with pytest.raises(ValueError, match=r"cannot read .*none\.crg: No such file"):
+        loaded("belgian_block").told(tmp_path / "none.crg")

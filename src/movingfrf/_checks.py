@@ -6,12 +6,13 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from numbers import Real
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import psutil
 from numpy.typing import ArrayLike, NDArray
 
+Kind = TypeVar("Kind")
 FloatArray = NDArray[np.floating[Any]]
 ComplexArray = NDArray[np.complexfloating[Any, Any]]
 # Real or complex.
@@ -113,6 +114,12 @@ class Checks:
             self.refuse(name, f"must be of a credible magnitude, at least {SMALLEST:g}, got {number!r} {unit}")
         return number
 
+    def positive_or_infinite(self, name: str, value: Any, unit: str) -> float:
+        """Demand a number above zero, or infinity."""
+        if isinstance(value, float) and value == math.inf:
+            return value
+        return self.positive(name, value, unit)
+
     def not_negative(self, name: str, value: Any, unit: str) -> float:
         """Demand a number of at least zero."""
         number = self.finite(name, value, unit, "a number of at least zero")
@@ -127,14 +134,22 @@ class Checks:
             return least
         return int(value)
 
+    def text(self, name: str, value: Any) -> str:
+        """Demand a text."""
+        if isinstance(value, str):
+            return value
+        self.refuse(name, f"must be a text, got {shown(value)}")
+        return ""
+
     def array(self, name: str, value: ArrayLike, unit: str, shape: tuple[int | None, ...]) -> FloatArray:
         """Demand finite numbers in an array of the given shape (None: any length); returns a frozen copy."""
         try:
             given = np.asarray(value)
             array = np.array(given, dtype=float)
+            numbers = given.dtype.kind in "iuf" or not array.size
         except (TypeError, ValueError, OverflowError):
-            given, array = np.array(None), np.empty(0)
-        if array.size and given.dtype.kind not in "iuf":
+            numbers = False
+        if not numbers:
             self.refuse(name, f"must be an array of numbers [{unit}], got {shown(value)}")
             return np.full([n or 1 for n in shape], np.nan)
         wanted = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
@@ -152,16 +167,33 @@ class Checks:
         array.flags.writeable = False
         return array
 
+    def listed(self, name: str, value: Any, kind: type[Kind], *, least: int = 1) -> tuple[Kind, ...]:
+        """Demand a list of at least `least` objects of one kind."""
+        if isinstance(value, (list, tuple)) and len(value) >= least and all(isinstance(one, kind) for one in value):
+            return tuple(value)
+        number = "one or more" if least else "any number of"
+        what = {str: "texts", int: "whole numbers"}.get(kind, f"{kind.__name__} objects")
+        self.refuse(name, f"must be a list of {number} {what}, got {shown(value)}")
+        return ()
+
     def pair(
-        self, name: str, value: Any, unit: str, *, positive: bool = True, signed: bool = False
+        self,
+        name: str,
+        value: Any,
+        unit: str,
+        *,
+        positive: bool = True,
+        signed: bool = False,
+        infinite: bool = False,
     ) -> tuple[float, float]:
-        """Demand two numbers: positive ones, or at least zero, or of any sign."""
+        """Demand two numbers: positive ones, or at least zero, or of any sign; or positive ones or infinity."""
         try:
             first, second = value
         except (TypeError, ValueError):
             self.refuse(name, f"must be two numbers [{unit}], got {shown(value)}")
             return (float("nan"), float("nan"))
         check = self.finite if signed else self.positive if positive else self.not_negative
+        check = self.positive_or_infinite if infinite else check
         return check(f"{name}[0]", first, unit), check(f"{name}[1]", second, unit)
 
 

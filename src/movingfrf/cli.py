@@ -7,9 +7,10 @@ import signal
 import sys
 import time
 import warnings
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 from cyclopts import App, CycloptsError, Parameter
 from rich.console import Console
@@ -20,10 +21,15 @@ from movingfrf._checks import SolveError, ValidityWarning
 from movingfrf.version import VERSION
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import xarray as xr
 
     from movingfrf.metrics.basic import Measure
     from movingfrf.page import Table as TableForReading
+    from movingfrf.roughness.files import ReadProfile
+
+Number = TypeVar("Number", int, float)
 
 # Exit statuses.
 DONE, DEFECT, REFUSED, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
@@ -49,6 +55,7 @@ app = App(
     (--loads: prescribed forces instead of a vehicle).
 
     2. movingfrf check truck.toml says what it describes: natural frequencies, critical speed, roughness class.
+    movingfrf vehicles lists vehicles to take from the catalogue, or describes one.
 
     3. movingfrf run truck.toml --output out/truck solves it and writes result.nc (netCDF: xarray, MATLAB, ...),
     summary.json and report.html.
@@ -56,7 +63,13 @@ app = App(
     4. movingfrf compare truck.toml --output out/compared solves it by other methods too, stepping in time among
     them, and says how long each takes and how far it is from the converged answer.
 
-    5. movingfrf paper --output out/paper reproduces the paper on the moving FRF, figure by figure.
+    5. movingfrf random truck.toml --output out/random computes the response to all roads with its spectrum, without
+    realising one; movingfrf measure out/truck/result.nc gives comfort, load on the road and fatigue of a result.
+
+    6. movingfrf paper --output out/paper reproduces the paper on the moving FRF, figure by figure.
+
+    7. movingfrf profile road.csv describes a measured profile: class, waviness, IRI, what looks odd. movingfrf
+    convert road.csv road.nc turns one format into another.
 
     Exit status: 0 done, 2 refused (a file, a value, a case without an answer), 130 interrupted, 1 a defect.""",
 )
@@ -100,12 +113,54 @@ def check(file: Path, /) -> None:
 
     scenario = read_scenario(file)
     console = _console()
-    for heading, lines in described(scenario):
-        table = Table(title=heading, title_justify="left", title_style="bold", show_header=False, box=None)
-        for name, value in lines:
-            table.add_row(name, value)
-        console.print(table)
+    _print_sections(console, described(scenario))
     console.print(f"{file}: in order", soft_wrap=True)
+
+
+@app.command
+def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Parameter(alias="-o")] = None) -> None:
+    """List the vehicles of the catalogue, or describe one: weight, contacts, natural frequencies, what vibrates.
+
+    Parameters
+    ----------
+    name
+        A vehicle of the catalogue, a file of matrices (.mat, .npz, .toml) or a scenario; all of the catalogue in
+        short by default.
+    output
+        A file, .npz or .mat, to write the vehicle's matrices to.
+    """
+    from movingfrf.describe import described_vehicle
+    from movingfrf.scenario import named_vehicle
+    from movingfrf.vehicles.base import GRAVITY
+    from movingfrf.vehicles.catalogue import CATALOGUE
+    from movingfrf.vehicles.files import write_vehicle
+    from movingfrf.wording import count
+
+    console = _console()
+    if name is None:
+        if output is not None:
+            raise ValueError("--output needs the name of a vehicle")
+        for one, entry in CATALOGUE.items():
+            made = entry.make()
+            mass = made.static_loads.sum() / GRAVITY
+            console.print(one, style="bold")
+            console.print(f"  {entry.summary}", soft_wrap=True)
+            console.print(
+                f"  {len(made.dof_names)} degrees of freedom, {count(len(made.contacts), 'contact')}, "
+                f"{mass / 1e3:.4g} t, {made.natural_frequencies.min():.3g} to "
+                f"{made.natural_frequencies.max():.3g} Hz",
+                soft_wrap=True,
+            )
+            console.print(f"  source: {entry.source}", soft_wrap=True)
+        console.print('\nin a scenario: [vehicle] kind = "catalogue", name = "half_truck"', soft_wrap=True)
+        return
+    vehicle = named_vehicle(name)
+    if name in CATALOGUE:
+        console.print(f"{name}: {CATALOGUE[name].summary}\nsource: {CATALOGUE[name].source}", soft_wrap=True)
+    _print_sections(console, described_vehicle(vehicle))
+    if output is not None:
+        write_vehicle(vehicle, output)
+        console.print(f"wrote {output}", soft_wrap=True)
 
 
 @app.command
@@ -155,6 +210,132 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
     console.print(stages.table())
     for name in ("report.html", "result.nc", "summary.json"):
         console.print(f"wrote {folder / name}", soft_wrap=True)
+
+
+@app.command
+def random(
+    file: Path,
+    /,
+    *,
+    exposure: float = 600.0,
+    slope: float | None = None,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+) -> None:
+    """Compute the response of a scenario to all roads with its spectrum, without realising one.
+
+    Root mean squares, crossing rates and expected peaks of every response, dynamic load coefficients, how often
+    contact would be lost. Writes random.nc, summary.json and report.html.
+
+    Parameters
+    ----------
+    file
+        The scenario; its roughness must have a spectrum, as iso_road has.
+    exposure
+        Duration for which largest values are expected, in seconds.
+    slope
+        Exponent of an S-N curve; adds the steady amplitude that damages as much as each contact force.
+    output
+        The folder to write into; out/NAME-random beside the scenario by default.
+    """
+    console = _console()
+    stages = _Stages()
+    with stages:
+        stages.report("loading", 0.0)
+        from movingfrf.output import replacing, save, summary
+        from movingfrf.random_measures import random_measures
+        from movingfrf.random_report import render
+        from movingfrf.random_vibration import random_response
+        from movingfrf.scenario import read_scenario
+
+        scenario = read_scenario(file)
+        road = scenario.road
+        if road is None or scenario.vehicle is None:
+            raise ValueError(f"{file}: prescribed loads have no random road; a vehicle and a spectrum are needed")
+        if road.spectrum is None:
+            raise ValueError(
+                f"{file}: the roughness has no spectrum ({road.description}): it is one road, not all of a kind. "
+                "`movingfrf run` computes the response to it. A random road needs a kind with a spectrum, such as "
+                "iso_road with the roughness and waviness that `movingfrf check` fits to a measured profile"
+            )
+        folder = output if output is not None else file.parent / "out" / f"{scenario.name}-random"
+        with replacing(folder) as temporary, warnings.catch_warnings():
+            # Findings are printed with the results; no need to warn of them as well.
+            warnings.simplefilter("ignore", ValidityWarning)
+            result = random_response(
+                scenario.guideway,
+                scenario.vehicle,
+                road.spectrum,
+                speed=scenario.journey.speed,
+                coherence=road.coherence,
+                exposure=exposure,
+                progress=stages.report,
+            ).assign_attrs(scenario=scenario.text)
+            found = random_measures(result, slope=slope)
+            save(result, temporary / "random.nc")
+            (temporary / "summary.json").write_text(summary(result, found), encoding="utf-8")
+            stages.report("report.html", 0.0)
+            title = f"{scenario.name}: random road"
+            page = render(result, found, title=title, scenario=scenario.text)
+            (temporary / "report.html").write_text(page, encoding="utf-8")
+    console.print(f"Spectrum: {result.attrs['spectrum']}; paths: {result.attrs['coherence']}\n", soft_wrap=True)
+    _print_result(console, result, found)
+    for name in ("report.html", "random.nc", "summary.json"):
+        console.print(f"wrote {folder / name}", soft_wrap=True)
+
+
+@app.command
+def measure(
+    file: Path,
+    /,
+    *,
+    contact: list[int] | None = None,
+    dof: list[str] | None = None,
+    weighting: str = "Wk",
+    slope: float | None = None,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+) -> None:
+    """Measure an earlier result: comfort, load on the road, lost contact, fatigue.
+
+    Prints every measure with its unit and the standard or source that defines it.
+
+    Parameters
+    ----------
+    file
+        The result.nc of a run.
+    contact
+        Number of a contact; again for another. All by default.
+    dof
+        Name of a degree of freedom; again for another. All by default.
+    weighting
+        Frequency weighting of translations: Wk (vertical), Wd (horizontal), Wb (rail), Wf (motion sickness), Wc,
+        We, Wj. Rotations have We.
+    slope
+        Exponent of an S-N curve; adds the steady amplitude that damages as much as each contact force.
+    output
+        A file to write the measures to as well: .json or .csv.
+    """
+    from movingfrf.metrics.basic import assess
+    from movingfrf.output import load, measures_as_csv, summary
+
+    if output is not None and output.suffix not in (".json", ".csv"):
+        raise ValueError(f"{output}: must end in .json or .csv")
+    result = load(file)
+    found = assess(result, contacts=contact, dofs=dof, weighting=weighting, slope=slope)
+    console = _console()
+    table = Table(box=None, pad_edge=False)
+    for heading, justify in (("", "left"), ("value", "right"), ("unit", "left"), ("by", "left")):
+        table.add_column(heading, justify=justify, no_wrap=True)  # type: ignore[arg-type]
+    above = ""
+    for taken in found:
+        if taken.quantity != above:
+            table.add_row(taken.quantity, style="bold")
+        table.add_row(f"  {taken.name}", f"{taken.value:.4g}", taken.units, taken.standard)
+        above = taken.quantity
+    console.print(table)
+    if output is not None:
+        text = measures_as_csv(found) if output.suffix == ".csv" else summary(result, found)
+        output.write_text(text, encoding="utf-8")
+        console.print(f"wrote {output}", soft_wrap=True)
 
 
 @app.command
@@ -261,6 +442,201 @@ def paper(
         console.print(f"wrote {count} files into {output / folder}", soft_wrap=True)
 
 
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class ProfileOptions:
+    """How a profile is read and what is done to it, in this order; nothing is done that is not asked for.
+
+    Parameters
+    ----------
+    format
+        Format of the file: crg, erd, mat, netcdf, gpx or csv; found from its content by default.
+    columns
+        Columns to take, names or numbers from 0 with commas between them: the station, then elevations.
+    across
+        Lateral positions of the paths to take from a grid [m], left positive, with commas: 0.75,-0.75.
+    crop_rims
+        Leave out what a grid has no elevation for at its rims.
+    repair_gaps
+        Fill missing elevations by straight lines, in gaps of at most this length [m].
+    paths
+        Numbers of the paths to take, from 0, with commas between them.
+    first
+        Take stations from this distance on [m].
+    last
+        Take stations up to this distance [m].
+    spike
+        Replace elevations further than this from the median of 1 m around them [m].
+    detrend
+        Take out a polynomial of this degree: 0 the mean, 1 a straight line.
+    high_pass
+        Take out waves longer than this [m].
+    step
+        Resample to this step [m].
+    repeat_to
+        Repeat the profile up to this length [m].
+    mirror_to
+        Drive the profile forth and back up to this length [m].
+    """
+
+    format: str | None = None
+    columns: str | None = None
+    across: str | None = None
+    crop_rims: bool = False
+    repair_gaps: float | None = None
+    paths: str | None = None
+    first: float | None = None
+    last: float | None = None
+    spike: float | None = None
+    detrend: int | None = None
+    high_pass: float | None = None
+    step: float | None = None
+    repeat_to: float | None = None
+    mirror_to: float | None = None
+
+    def profile(self, file: Path) -> ReadProfile:
+        """Read a file and do what was asked for."""
+        from movingfrf.roughness.files import ReadProfile, read_profile
+        from movingfrf.roughness.preparation import prepared
+
+        columns = [int(word) if word.isdecimal() else word for word in _words(self.columns)]
+        found, understood = read_profile(
+            file,
+            format=self.format,
+            columns=columns or None,
+            across=_numbers(self.across, "--across", float) or None,
+            crop_rims=self.crop_rims,
+            repair_gaps=self.repair_gaps,
+        )
+        ready = prepared(
+            found,
+            paths=_numbers(self.paths, "--paths", int) or None,
+            first=self.first,
+            last=self.last,
+            spike=self.spike,
+            detrend=self.detrend,
+            high_pass=self.high_pass,
+            step=self.step,
+            repeat_to=self.repeat_to,
+            mirror_to=self.mirror_to,
+        )
+        return ReadProfile(ready, understood)
+
+
+AS_THE_FILE_HAS_IT = ProfileOptions()
+
+
+@app.command
+def profile(
+    file: Path,
+    /,
+    *,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    options: ProfileOptions = AS_THE_FILE_HAS_IT,
+) -> None:
+    """Describe a measured profile: length, step, spectrum and ISO 8608 class, IRI, coherence, and what looks odd.
+
+    With --output it writes profile.html (tables and figures) and profile.json (all numbers) as well.
+
+    Parameters
+    ----------
+    file
+        The profile: OpenCRG, ERD, CSV or other text in columns, MATLAB, netCDF, GPX.
+    output
+        The folder to write into.
+    options
+        How it is read and prepared.
+    """
+    console = _console()
+    stages = _Stages()
+    with stages:
+        stages.report("reading", 0.0)
+        from movingfrf.output import replacing
+        from movingfrf.profile_description import as_dict, describe_profile
+        from movingfrf.profile_report import render, tables
+
+        read, understood = options.profile(file)
+        found = describe_profile(read, progress=stages.report)
+        written = []
+        if output is not None:
+            stages.report("figures", 0.0)
+            texts = {
+                "profile.html": render(found, understood=understood, title=file.name),
+                "profile.json": json.dumps(as_dict(found, understood), indent=1, ensure_ascii=False) + "\n",
+            }
+            with replacing(output) as temporary:
+                for name, text in texts.items():
+                    (temporary / name).write_text(text, encoding="utf-8")
+            written = [output / name for name in texts]
+    console.print(f"{understood}\n", soft_wrap=True)
+    for sentence in read.steps:
+        console.print(f"- {sentence}", soft_wrap=True)
+    for table in tables(found):
+        _print_table(console, table)
+    _print_findings(console, list(found.findings))
+    for place in written:
+        console.print(f"wrote {place}", soft_wrap=True)
+
+
+@app.command
+def convert(
+    file: Path,
+    target: Path,
+    /,
+    *,
+    encoding: str | None = None,
+    force: bool = False,
+    options: ProfileOptions = AS_THE_FILE_HAS_IT,
+) -> None:
+    """Convert a profile from one format to another: CSV, ERD, MATLAB, netCDF, OpenCRG; GPX is only read.
+
+    Parameters
+    ----------
+    file
+        The profile.
+    target
+        The file to write; its ending tells the format: .csv, .erd, .mat, .nc, .crg.
+    encoding
+        How numbers are stored: of .crg double, float, long text, short text; of .erd text, float, double.
+    force
+        Replace the target if it exists.
+    options
+        How it is read and prepared.
+    """
+    console = _console()
+    stages = _Stages()
+    with stages:
+        stages.report("reading", 0.0)
+        from movingfrf.output import replacing
+        from movingfrf.roughness.files import write_profile
+
+        if target.exists() and not force:
+            raise ValueError(f"{target} exists; choose another name, or --force to replace it")
+        read, understood = options.profile(file)
+        stages.report("writing", 0.0)
+        with replacing(target.parent) as temporary:
+            write_profile(read, temporary / target.name, encoding=encoding)
+            written = sorted(part.name for part in temporary.iterdir())
+    console.print(understood, soft_wrap=True)
+    for sentence in read.steps:
+        console.print(f"- {sentence}", soft_wrap=True)
+    for name in written:
+        console.print(f"wrote {target.parent / name}", soft_wrap=True)
+
+
+def _words(listed: str | None) -> list[str]:
+    """Split a list with commas; empty without one."""
+    return [] if listed is None else [word.strip() for word in listed.split(",") if word.strip()]
+
+
+def _numbers(listed: str | None, option: str, kind: Callable[[str], Number]) -> list[Number]:
+    """Read the numbers in a list with commas."""
+    try:
+        return [kind(word) for word in _words(listed)]
+    except ValueError:
+        raise ValueError(f"{option} must be numbers with commas between them, got {listed!r}") from None
+
+
 def _console() -> Console:
     """Console that prints names as they are, whatever brackets or colons they hold."""
     return Console(highlight=False, markup=False, emoji=False)
@@ -330,6 +706,15 @@ def _print_result(console: Console, result: xr.Dataset, found: list[Measure]) ->
         console.print(table)
         console.print()
     _print_findings(console, [finding["message"] for finding in json.loads(result.attrs["findings"])])
+
+
+def _print_sections(console: Console, sections: list[tuple[str, list[tuple[str, str]]]]) -> None:
+    """Print headings, each with lines of name and value."""
+    for heading, lines in sections:
+        table = Table(title=heading, title_justify="left", title_style="bold", show_header=False, box=None)
+        for name, value in lines:
+            table.add_row(name, value)
+        console.print(table)
 
 
 def _print_findings(console: Console, messages: list[str]) -> None:

@@ -7,20 +7,23 @@ constant; what the roughness adds to that state solves (I + D G) F = D R.
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from movingfrf._checks import ComplexArray, FloatArray, SolveError
 from movingfrf.guideways.base import Guideway
 from movingfrf.progress import Progress, silent
 from movingfrf.spectral import SpectralGrid
-from movingfrf.vehicles.base import Modes, Vehicle
+from movingfrf.vehicles.base import Vehicle
+from movingfrf.vehicles.dynamics import Dynamics
 
-# Frequencies solved at a time: their arrays stay within the processor's cache.
-CHUNK = 4096
+# Frequencies solved at a time: their arrays stay within the processor's cache. Of many contacts, fewer.
+CHUNK, ENTRIES = 4096, 2**18
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -83,19 +86,19 @@ class System:
         The vehicle.
     speed : float
         Speed [m/s].
-    modes : Modes or None
-        What `vehicle.modes()` returns, computed once.
+    dynamics : Dynamics
+        What `vehicle.dynamics()` returns, computed once.
     """
 
     guideway: Guideway
     vehicle: Vehicle
     speed: float
-    modes: Modes | None
+    dynamics: Dynamics
 
     def sample(self, omega: ComplexArray) -> Sample:
         """Evaluate both sides at some frequencies [rad/s]."""
         frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
-        return Sample(omega, frf, self.vehicle.dynamic_stiffness(omega, self.modes))
+        return Sample(omega, frf, self.dynamics.stiffness(omega))
 
     def samples(self, *omegas: ComplexArray) -> list[Sample]:
         """Evaluate both sides at several sets of frequencies [rad/s] in one go."""
@@ -105,7 +108,7 @@ class System:
 
     def motion(self, omega: ComplexArray, displacement: ComplexArray) -> ComplexArray:
         """Motion of the vehicle (frequency, dof) that is displaced below its contacts (frequency, contact)."""
-        return self.vehicle.motion(omega, self.vehicle.contact_stiffness(omega) * displacement, self.modes)
+        return self.dynamics.response(omega, displacement)[0]
 
 
 def joined(guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
@@ -125,7 +128,17 @@ def joined(guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
     System
         The two together.
     """
-    return System(guideway, vehicle, speed, vehicle.modes())
+    return System(guideway, vehicle, speed, vehicle.dynamics())
+
+
+def chunk_for(contacts: int) -> int:
+    """Frequencies to solve at a time with so many contacts."""
+    return max(min(CHUNK, ENTRIES // contacts**2), 16)
+
+
+def unthreaded(contacts: int) -> AbstractContextManager[object]:
+    """Keep LAPACK to one thread: many small matrices gain nothing by two, and lose tenfold if one has to wait."""
+    return threadpool_limits(limits=1) if contacts > 2 else nullcontext()
 
 
 def solve_contacts(frf: ComplexArray, stiffness: ComplexArray, gap: ComplexArray) -> ComplexArray:
@@ -221,28 +234,25 @@ def couple(
         If a result is not finite.
     """
     vehicle = system.vehicle
-    contact_map = vehicle.matrices[3]
     # One channel after the other in memory, as the transforms read them.
     deflection = np.empty((len(vehicle.contacts), grid.kept), complex).T
     force = np.empty((len(vehicle.contacts), grid.size), complex).T
     motion = np.empty((len(vehicle.dof_names), grid.size), complex).T
-    for first in range(0, grid.size, CHUNK):
-        last = min(first + CHUNK, grid.size)
-        omega = grid.omega(slice(first, last))
-        displacement = -roughness[first:last]
-        kept = max(min(last, grid.kept) - first, 0)
-        if kept:
-            _, frf, stiffness = system.sample(omega[:kept])
-            frf = frf * grid.compliance(slice(first, first + kept))[:, None, None]
-            forces = solve_contacts(frf, stiffness, roughness[first : first + kept, :, None])
-            deflection[first : first + kept] = product(frf, forces)[:, :, 0]
-            displacement[:kept] += deflection[first : first + kept]
-        springs = vehicle.contact_stiffness(omega)
-        displacement *= springs
-        moved = vehicle.motion(omega, displacement, system.modes)
-        motion[first:last] = moved
-        force[first:last] = springs * (contact_map @ moved.T).T - displacement
-        progress("coupling", last / grid.size)
+    chunk = chunk_for(len(vehicle.contacts))
+    with unthreaded(len(vehicle.contacts)):
+        for first in range(0, grid.size, chunk):
+            last = min(first + chunk, grid.size)
+            omega = grid.omega(slice(first, last))
+            displacement = -roughness[first:last]
+            kept = max(min(last, grid.kept) - first, 0)
+            if kept:
+                _, frf, stiffness = system.sample(omega[:kept])
+                frf = frf * grid.compliance(slice(first, first + kept))[:, None, None]
+                forces = solve_contacts(frf, stiffness, roughness[first : first + kept, :, None])
+                deflection[first : first + kept] = product(frf, forces)[:, :, 0]
+                displacement[:kept] += deflection[first : first + kept]
+            motion[first:last], force[first:last] = system.dynamics.response(omega, displacement)
+            progress("coupling", last / grid.size)
     # A sum is finite only if all of its terms are.
     if not all(np.isfinite(part.sum()) for part in (deflection, force, motion)):
         raise SolveError(

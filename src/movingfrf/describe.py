@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from movingfrf._checks import FloatArray
 from movingfrf.coupling import joined, steady_state
 from movingfrf.roughness.profiles import Profile
 from movingfrf.roughness.spectra import fit_iso, iso_class, welch
 from movingfrf.scenario import Scenario
 from movingfrf.simulation import BYTES_PER_SAMPLE, spectral_grid
 from movingfrf.spectral import SpectralGrid
+from movingfrf.vehicles.base import Vehicle
+from movingfrf.vehicles.modes import Mode, vehicle_modes
 
 # A section: its heading and its lines of name and value.
 Section = tuple[str, list[tuple[str, str]]]
+
+# Words and contacts of a list that are written out, and the difference between poles that count as one.
+MOST_WORDS, MOST_CONTACTS, SAME_POLE = 14, 12, 1e-6
 
 
 def described(scenario: Scenario) -> list[Section]:
@@ -30,7 +38,8 @@ def described(scenario: Scenario) -> list[Section]:
     """
     sections: list[Section] = [("Guideway", _guideway(scenario))]
     if scenario.vehicle is not None:
-        sections.append(("Vehicle", _vehicle(scenario)))
+        vehicle, _, vibrations = described_vehicle(scenario.vehicle)
+        sections += [vehicle, ("Contacts in steady travel", _steady_contacts(scenario)), vibrations]
     if scenario.road is not None:
         sections.append(("Roughness", _roughness(scenario.road.profile, scenario.road.description)))
     if scenario.loads is not None:
@@ -47,18 +56,82 @@ def _guideway(scenario: Scenario) -> list[tuple[str, str]]:
     ]
 
 
-def _vehicle(scenario: Scenario) -> list[tuple[str, str]]:
-    vehicle = scenario.vehicle
-    assert vehicle is not None
-    system = joined(scenario.guideway, vehicle, scenario.journey.speed)
+def _steady_contacts(scenario: Scenario) -> list[tuple[str, str]]:
+    assert scenario.vehicle is not None
+    system = joined(scenario.guideway, scenario.vehicle, scenario.journey.speed)
     steady = steady_state(system, system.sample(np.zeros(1, complex)))
-    modes = zip(vehicle.natural_frequencies, vehicle.damping_ratios, strict=True)
+    return _contacts(scenario.vehicle, steady.load, steady.deflection)
+
+
+def described_vehicle(vehicle: Vehicle) -> list[Section]:
+    """Describe a vehicle on its own, on a rigid road.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle.
+
+    Returns
+    -------
+    list of (str, list of (str, str))
+        Headings, each with lines of name and value: degrees of freedom and weight, contacts, vibrations.
+    """
     return [
-        ("degrees of freedom", ", ".join(vehicle.dof_names)),
-        ("contacts at", ", ".join(f"{x:g} m" for x in vehicle.positions)),
-        ("steady contact forces", ", ".join(f"{load / 1e3:.2f} kN" for load in steady.load)),
-        ("steady deflections", ", ".join(f"{sag * 1e3:.3f} mm" for sag in steady.deflection)),
-        ("natural frequencies", "; ".join(f"{f:.3f} Hz ({100 * d:.1f} % damping)" for f, d in modes)),
+        (
+            "Vehicle",
+            [
+                ("degrees of freedom", _enumerated(vehicle.dof_names)),
+                ("weight", f"{vehicle.static_loads.sum() / 1e3:.2f} kN"),
+            ],
+        ),
+        ("Contacts", _contacts(vehicle, vehicle.static_loads)),
+        ("Vibrations on a rigid road", _vibrations(vehicle)),
+    ]
+
+
+def _enumerated(words: Sequence[str]) -> str:
+    """Words with commas between them, the middle ones left out where there are many."""
+    if len(words) <= MOST_WORDS:
+        return ", ".join(words)
+    return f"{', '.join(words[: MOST_WORDS - 2])}, …, {words[-1]} ({len(words)} in all)"
+
+
+def _contacts(vehicle: Vehicle, loads: FloatArray, sags: FloatArray | None = None) -> list[tuple[str, str]]:
+    """One line per contact: name and number, then where it is, what it carries and how it is held."""
+    lines = []
+    for number, (contact, load) in enumerate(zip(vehicle.contacts, loads, strict=True)):
+        place = f"at {contact.position:g} m" + (f", {contact.across:+g} m across" if contact.across else "")
+        held = "rigid" if contact.rigid else f"{contact.stiffness:.4g} N/m"
+        if contact.damping:
+            held += f", {contact.damping:.4g} N s/m"
+        patch = f", footprint {contact.footprint:g} m" if contact.footprint else ""
+        cams = f", cams {contact.cams:g} m apart" if contact.cams else ""
+        sag = "" if sags is None else f", deflection {sags[number] * 1e3:.3f} mm"
+        path = f", path {contact.path}" if contact.path else ""
+        name = f"{number} {contact.name}".rstrip()
+        lines.append((name, f"{place}{path}, {load / 1e3:.2f} kN{sag}, {held}{patch}{cams}"))
+    if len(lines) <= MOST_CONTACTS:
+        return lines
+    left_out = len(lines) - MOST_CONTACTS + 1
+    return [*lines[: MOST_CONTACTS - 2], ("…", f"{left_out} more"), lines[-1]]
+
+
+def _vibrations(vehicle: Vehicle) -> list[tuple[str, str]]:
+    """One line per natural frequency; the equal ones of equal cars share a line."""
+    groups: list[list[Mode]] = []
+    for mode in vehicle_modes(vehicle):
+        if groups and abs(mode.pole - groups[-1][0].pole) < SAME_POLE * abs(mode.pole):
+            groups[-1].append(mode)
+        else:
+            groups.append([mode])
+    if not groups:
+        return [("none", "every motion is prescribed by a rigid contact")]
+    return [
+        (
+            f"{group[0].frequency:.3f} Hz" + (f" ({len(group)} times)" if len(group) > 1 else ""),
+            f"{100 * group[0].damping_ratio:.1f} % damping: {group[0].description}",
+        )
+        for group in groups
     ]
 
 

@@ -182,15 +182,17 @@ def tabulated(*, file: Path, column: int = 1) -> History:
     """
     from scipy.interpolate import CubicSpline
 
-    from movingfrf.roughness.readers.columns import read_columns
+    from movingfrf.roughness.formats.columns import read_numbers
 
-    table = read_columns(file).profile
-    forces = np.asarray(table.elevation).reshape(len(table.stations), -1)
+    table = read_numbers(file)
+    time, forces = table[:, 0], table[:, 1:]
     with checking() as check:
+        if len(time) < 4 or (np.diff(time) <= 0).any():
+            check.refuse("file", f"must hold at least 4 rows of increasing time [s], {file} does not")
         check.whole("column", column, least=1)
         if not check.faults and column > forces.shape[1]:
             check.refuse("column", f"must be at most {forces.shape[1]}, the columns of {file}, got {column}")
-    time, spline = table.stations, CubicSpline(table.stations, forces[:, column - 1])
+    spline = CubicSpline(time, forces[:, column - 1])
     return lambda at: np.where((at >= time[0]) & (at <= time[-1]), spline(at), 0.0)
 
 

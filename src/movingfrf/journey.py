@@ -70,11 +70,4 @@ class Journey:
 
     def coordinates(self, vehicle: Vehicle) -> dict[str, ArrayLike]:
         """Coordinates of a coupled result by their names in the schema: times, contacts, degrees of freedom."""
-        return {
-            "time": np.arange(self.samples) * self.time_step,
-            "contact": np.arange(len(vehicle.contacts)),
-            "position": vehicle.positions,
-            "path": np.array([contact.path for contact in vehicle.contacts]),
-            "dof": np.array(vehicle.dof_names),
-            "dof_unit": np.where(np.asarray(vehicle.vertical) == 0, "rad", "m"),
-        }
+        return {"time": np.arange(self.samples) * self.time_step, **vehicle.coordinates}

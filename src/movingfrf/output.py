@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import errno
+import io
 import json
 import os
 import shutil
@@ -80,6 +82,61 @@ def save(result: xr.Dataset, file: Path) -> None:
         The file.
     """
     result.to_netcdf(file, engine="h5netcdf")
+
+
+def load(file: Path) -> xr.Dataset:
+    """Open a result that `save` wrote.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+
+    Returns
+    -------
+    xarray.Dataset
+        The result, wholly in memory.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If it is not netCDF, or no result of the package.
+    """
+    import xarray as xr
+
+    # Asked first, since the library below hides why a file cannot be read in half a page of text.
+    with file.open("rb"):
+        pass
+    try:
+        with xr.open_dataset(file, engine="h5netcdf") as opened:
+            result: xr.Dataset = opened.load()
+    except OSError:
+        raise ValueError(f"{file}: is not a netCDF file, or a damaged one") from None
+    if "movingfrf" not in result.attrs or "deflection" not in result:
+        raise ValueError(f"{file}: is no result of movingfrf")
+    return result
+
+
+def measures_as_csv(found: list[Measure]) -> str:
+    """Write measures as a table, one a line, with units and standards.
+
+    Parameters
+    ----------
+    found : list of Measure
+        The measures.
+
+    Returns
+    -------
+    str
+        CSV text with a header; numbers with all their digits.
+    """
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(Measure._fields)
+    table.writerows(found)
+    return text.getvalue()
 
 
 def summary(result: xr.Dataset, found: list[Measure]) -> str:

@@ -143,8 +143,12 @@ def contact_curves(result: xr.Dataset, contacts: Sequence[int] | None = None) ->
     """
     position, path = result.position.values, result.path.values
     several_paths = len(np.unique(path)) > 1
+    called = result.contact_name.values.tolist() if "contact_name" in result.coords else [""] * len(path)
     names = [
-        f"contact {number} at {_signed(place)} m" + (f", path {path[number]}" if several_paths else "")
+        f"contact {number}"
+        + (f" ({called[number]})" if called[number] else "")
+        + f" at {_signed(place)} m"
+        + (f", path {path[number]}" if several_paths else "")
         for number, place in enumerate(position)
     ]
     return _curves(names, contacts)
@@ -456,7 +460,7 @@ def roughness_spectrum(result: xr.Dataset, ax: Axes) -> Axes:
             ax.plot(across, fitted.density(across), color=INK, linestyle="--", linewidth=1.6, label=label)
     ax.set(xscale="log", yscale="log", xlim=(low, high), ylim=(lowest / 30, 5 * highest))
     ax.minorticks_off()
-    _draw_classes(ax, ends)
+    draw_classes(ax, ends)
     if not ax.get_legend_handles_labels()[0]:
         _note(ax, "the road is flat, or the record too short for a spectrum")
     ax.set_xlabel("spatial frequency [cycle/m]")
@@ -766,7 +770,7 @@ def _upper_end(frequency: FloatArray, density: FloatArray, truncation: float) ->
     return min(max(1.3 * needed, 1.3 * truncation, LEAST_END), float(frequency[-1]))
 
 
-def _draw_classes(ax: Axes, ends: FloatArray) -> None:
+def draw_classes(ax: Axes, ends: FloatArray) -> None:
     """Centre lines of the ISO 8608 classes, each named at its right end."""
     for letter in CLASS_CENTRES:
         density = IsoRoad.of_class(letter).density(ends)

@@ -227,7 +227,13 @@ def _measure_table(
             columns,
             made,
         )
-    return Table("Accelerations about the steady state.", "degree of freedom", columns, made)
+    return Table(
+        "Accelerations about the steady state, as they are and as people feel them: weighted by ISO 2631-1, "
+        "translations with Wk and rotations with We.",
+        "degree of freedom",
+        columns,
+        made,
+    )
 
 
 def _column_name(kind: str, name: str) -> str:

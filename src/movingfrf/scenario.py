@@ -24,14 +24,21 @@ from movingfrf.guideways.rigid import RigidGuideway
 from movingfrf.guideways.track import EulerBernoulliBeam, OnMass, ShearLayer, Spring, TimoshenkoBeam, track
 from movingfrf.journey import Journey
 from movingfrf.progress import Progress, silent
-from movingfrf.roughness import profiles
+from movingfrf.roads import ROADS, SPECTRA, Road
+from movingfrf.roughness.coherence import ExponentialCoherence, IsotropicCoherence
 from movingfrf.roughness.excitation import require_cover
-from movingfrf.roughness.profiles import Profile, realise
-from movingfrf.roughness.readers.columns import read_columns
-from movingfrf.roughness.spectra import IsoRoad, iso_class
+from movingfrf.roughness.files import read_profile
+from movingfrf.roughness.preparation import prepared
 from movingfrf.simulation import moving_loads, require_record, simulate, spectral_grid
-from movingfrf.vehicles.base import Contact, Vehicle
+from movingfrf.vehicles.assembly import Body, Hinge, Suspension, assemble
+from movingfrf.vehicles.base import Vehicle
+from movingfrf.vehicles.catalogue import catalogue
+from movingfrf.vehicles.combined import convoy, on_paths, seated, train
+from movingfrf.vehicles.contact import Contact
+from movingfrf.vehicles.files import read_vehicle
+from movingfrf.vehicles.rail import bogie, carriage, wheelset
 from movingfrf.vehicles.road import full_car, half_car, quarter_car
+from movingfrf.vehicles.truck import Axle, Unit, WalkingBeam, truck
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,13 +60,6 @@ class ScenarioError(ValueError):
         count = "1 fault" if len(self.faults) == 1 else f"{len(self.faults)} faults"
         lines = [f"  {fault.name} {fault.message}".rstrip() for fault in self.faults]
         super().__init__("\n".join([f"{source}: {count}", *lines]))
-
-
-class Road(NamedTuple):
-    """A profile and a sentence about where it comes from."""
-
-    profile: Profile
-    description: str
 
 
 class Loads(NamedTuple):
@@ -153,60 +153,52 @@ class Scenario:
         return result.assign_attrs(scenario=self.text, **road)
 
 
-def iso_road(
+def profile(
     *,
     interval: tuple[float, float],
-    roughness: float | None = None,
-    road_class: str | None = None,
-    waviness: float = 2.0,
-    band: tuple[float, float] = (0.01, 10.0),
-    step: float = 0.05,
-    seed: int | Sequence[int] = 0,
+    file: Path,
+    format: str | None = None,
+    columns: Sequence[str | int] | None = None,
+    across: Sequence[float] | None = None,
+    crop_rims: bool = False,
+    repair_gaps: float | None = None,
+    paths: Sequence[int] | None = None,
+    first: float | None = None,
+    last: float | None = None,
+    spike: float | None = None,
+    detrend: int | None = None,
+    high_pass: float | None = None,
+    step: float | None = None,
+    repeat_to: float | None = None,
+    mirror_to: float | None = None,
 ) -> Road:
-    """Realise an ISO 8608 road, by class or by roughness, over the interval that the journey needs.
-
-    A list of seeds gives one path each: equal seeds equal paths, different ones paths without anything in common.
-    """
-    with checking() as check:
-        if (roughness is None) == (road_class is None):
-            check.refuse("road_class", "or roughness is needed: a class, A to H, or a number [m³], not both")
-    if road_class is not None:
-        spectrum = IsoRoad.of_class(road_class, waviness=waviness, band=band)
-    else:
-        assert roughness is not None
-        spectrum = IsoRoad(roughness=roughness, waviness=waviness, band=band)
-    first, last = interval
-    return Road(
-        realise(spectrum, length=last - first, step=step, seed=seed, start=first),
-        f"ISO 8608 class {iso_class(spectrum.roughness)}, {spectrum.roughness:g} m³ at 0.1 cycle/m, waviness "
-        f"{waviness:g}, {spectrum.band[0]:g} to {spectrum.band[1]:g} cycle/m, seed {seed}",
+    """Read a measured profile, and prepare it as far as options ask for it; the description says what was done."""
+    found, understood = read_profile(
+        file, format=format, columns=columns, across=across, crop_rims=crop_rims, repair_gaps=repair_gaps
     )
-
-
-def profile(*, interval: tuple[float, float], file: Path) -> Road:
-    """Read a measured profile from columns of station and elevation."""
-    return Road(*read_columns(file))
-
-
-def harmonic(*, interval: tuple[float, float], amplitude: float, wavelength: float, phase: float = 0.0) -> Road:
-    """One sine wave over the interval that the journey needs."""
-    first, last = interval
-    made = profiles.harmonic(
-        amplitude=amplitude, wavelength=wavelength, phase=phase, length=last - first, start=first
+    ready = prepared(
+        found,
+        paths=paths,
+        first=first,
+        last=last,
+        spike=spike,
+        detrend=detrend,
+        high_pass=high_pass,
+        step=step,
+        repeat_to=repeat_to,
+        mirror_to=mirror_to,
     )
-    return Road(made, f"a sine wave of {amplitude:g} m amplitude and {wavelength:g} m length")
-
-
-def bump(*, interval: tuple[float, float], height: float, width: float, at: float) -> Road:
-    """One bump on a flat road over the interval that the journey needs."""
-    first, last = interval
-    made = profiles.bump(height=height, width=width, at=at, length=last - first, start=first)
-    return Road(made, f"a bump of {height:g} m height and {width:g} m length at {at:g} m")
+    return Road(ready, "; ".join([understood, *ready.steps[len(found.steps) :]]))
 
 
 def passage(*, speed: float, duration: float, time_step: float = 1e-3, truncation: float | None = None) -> Journey:
     """How prescribed loads travel: no vehicle, hence no profile to start on."""
     return Journey(speed=speed, duration=duration, time_step=time_step, truncation=truncation)
+
+
+def vehicle_file(*, file: Path) -> Vehicle:
+    """Read a vehicle from a file of matrices."""
+    return read_vehicle(file)
 
 
 def loads(
@@ -228,9 +220,35 @@ KINDS: dict[str, dict[str, Callable[..., Any]]] = {
     "guideway": {"track": track, "rigid_guideway": RigidGuideway},
     "beam": {"euler_bernoulli_beam": EulerBernoulliBeam, "timoshenko_beam": TimoshenkoBeam},
     "foundation": {"spring": Spring, "shear_layer": ShearLayer, "on_mass": OnMass},
-    "vehicle": {"half_car": half_car, "full_car": full_car, "quarter_car": quarter_car, "vehicle": Vehicle},
+    "vehicle": {
+        "half_car": half_car,
+        "full_car": full_car,
+        "quarter_car": quarter_car,
+        "truck": truck,
+        "wheelset": wheelset,
+        "bogie": bogie,
+        "carriage": carriage,
+        "convoy": convoy,
+        "train": train,
+        "seated": seated,
+        "on_paths": on_paths,
+        "catalogue": catalogue,
+        "assemble": assemble,
+        "vehicle": Vehicle,
+        "vehicle_file": vehicle_file,
+    },
     "contact": {"contact": Contact},
-    "roughness": {"iso_road": iso_road, "profile": profile, "harmonic": harmonic, "bump": bump},
+    "body": {"body": Body},
+    "suspension": {"suspension": Suspension},
+    "hinge": {"hinge": Hinge},
+    "unit": {"unit": Unit},
+    "axle": {"axle": Axle, "walking_beam": WalkingBeam},
+    "roughness": {**ROADS, "profile": profile},
+    "spectrum": SPECTRA,
+    "coherence": {
+        "isotropic_coherence": IsotropicCoherence,
+        "exponential_coherence": ExponentialCoherence,
+    },
     "journey": {"journey": Journey},
     "passage": {"passage": passage},
     "loads": {"loads": loads},
@@ -246,14 +264,38 @@ KINDS: dict[str, dict[str, Callable[..., Any]]] = {
 DEFAULT_KIND = {
     "guideway": "track",
     "contact": "contact",
+    "body": "body",
+    "suspension": "suspension",
+    "hinge": "hinge",
+    "unit": "unit",
+    "axle": "axle",
     "journey": "journey",
     "passage": "passage",
     "loads": "loads",
 }
 
 # Arguments that are tables themselves, and those that are lists of tables, with their family.
-TABLES = {"beam": "beam", "foundation": "foundation", "above": "foundation", "below": "foundation"}
-TABLE_LISTS = {("vehicle", "contacts"): "contact", ("loads", "force"): "force"}
+TABLES = {
+    "beam": "beam",
+    "foundation": "foundation",
+    "above": "foundation",
+    "below": "foundation",
+    "car": "vehicle",
+    "vehicle": "vehicle",
+    "spectrum": "spectrum",
+    "coherence": "coherence",
+}
+TABLE_LISTS = {
+    ("vehicle", "contacts"): "contact",
+    ("vehicle", "bodies"): "body",
+    ("vehicle", "suspensions"): "suspension",
+    ("vehicle", "hinges"): "hinge",
+    ("vehicle", "units"): "unit",
+    ("vehicle", "vehicles"): "vehicle",
+    ("unit", "axles"): "axle",
+    ("loads", "force"): "force",
+    ("roughness", "parts"): "roughness",
+}
 
 WITH_VEHICLE, WITH_LOADS = {"guideway", "vehicle", "roughness", "run"}, {"guideway", "loads", "run"}
 
@@ -280,13 +322,40 @@ def read_scenario(file: str | Path) -> Scenario:
         With everything that is wrong with the file.
     """
     path = Path(file)
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise ScenarioError(str(path), [Fault("the file", f"cannot be read: {error.strerror or error}")]) from None
-    except UnicodeDecodeError:
-        raise ScenarioError(str(path), [Fault("the file", "is not a text file")]) from None
-    return parse_scenario(text, name=path.stem, source=str(path), folder=path.parent)
+    return parse_scenario(_text(path), name=path.stem, source=str(path), folder=path.parent)
+
+
+def named_vehicle(name: str | Path) -> Vehicle:
+    """Find a vehicle: in the catalogue, in a file of matrices, or in the [vehicle] table of a scenario.
+
+    Parameters
+    ----------
+    name : str or Path
+        Name in the catalogue, or a file.
+
+    Returns
+    -------
+    Vehicle
+        The vehicle.
+
+    Raises
+    ------
+    ValueError
+        If there is none, or it is refused.
+    """
+    path = Path(name)
+    if not path.suffix:
+        return catalogue(name=str(name))
+    if path.suffix.lower() != ".toml":
+        return read_vehicle(path)
+    tables = _tables(_text(path), str(path))
+    if "vehicle" not in tables:
+        return read_vehicle(path)
+    builder = _Builder(path.parent)
+    vehicle: Vehicle | None = builder.section(tables, "vehicle", "vehicle")
+    if builder.faults or vehicle is None:
+        raise ScenarioError(str(path), builder.faults)
+    return vehicle
 
 
 def parse_scenario(
@@ -315,12 +384,7 @@ def parse_scenario(
     ScenarioError
         With everything that is wrong with the text.
     """
-    try:
-        tables = tomllib.loads(text)
-    except ValueError as error:  # TOML's own, or an integer of thousands of digits
-        raise ScenarioError(source, [Fault("the text", f"is not TOML: {error}")]) from None
-    except RecursionError:
-        raise ScenarioError(source, [Fault("the text", "is nested too deeply")]) from None
+    tables = _tables(text, source)
     if not tables:
         raise ScenarioError(source, [Fault("the file", "is empty; `movingfrf new` writes one to start from")])
     builder = _Builder(Path(folder))
@@ -328,6 +392,24 @@ def parse_scenario(
     if builder.faults or scenario is None:
         raise ScenarioError(source, builder.faults)
     return scenario
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        raise ScenarioError(str(path), [Fault("the file", f"cannot be read: {error.strerror or error}")]) from None
+    except UnicodeDecodeError:
+        raise ScenarioError(str(path), [Fault("the file", "is not a text file")]) from None
+
+
+def _tables(text: str, source: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except ValueError as error:  # TOML's own, or an integer of thousands of digits
+        raise ScenarioError(source, [Fault("the text", f"is not TOML: {error}")]) from None
+    except RecursionError:
+        raise ScenarioError(source, [Fault("the text", "is nested too deeply")]) from None
 
 
 class _Builder:
@@ -346,10 +428,10 @@ class _Builder:
                 self.faults.append(Fault(key, "and [loads] exclude each other: forces are computed or prescribed"))
                 return None
         self._check_keys("", tables, wanted, wanted)
-        guideway = self._section(tables, "guideway", "guideway")
-        journey = self._section(tables, "run", "passage" if with_loads else "journey")
+        guideway = self.section(tables, "guideway", "guideway")
+        journey = self.section(tables, "run", "passage" if with_loads else "journey")
         if with_loads:
-            found = self._section(tables, "loads", "loads")
+            found = self.section(tables, "loads", "loads")
             if found is not None and journey is not None:
                 channels = found.positions.size + found.observe.size
                 self._attempt(
@@ -361,15 +443,15 @@ class _Builder:
             return Scenario(
                 name=name, text=text, guideway=guideway, journey=journey, loads=found, folder=self.folder
             )
-        vehicle = self._section(tables, "vehicle", "vehicle")
+        vehicle = self.section(tables, "vehicle", "vehicle")
         interval = SOME_INTERVAL
         if journey is not None and vehicle is not None:
             interval = journey.interval(vehicle)
             if self._attempt("run:", lambda: spectral_grid(journey, vehicle)) is False:
                 return None
-        road = self._section(tables, "roughness", "roughness", interval=interval)
+        road = self.section(tables, "roughness", "roughness", interval=interval)
         if vehicle is not None and road is not None and journey is not None:
-            paths = [contact.path for contact in vehicle.contacts]
+            paths = vehicle.paths
             self._attempt("roughness:", lambda: require_cover(road.profile, *interval, paths))
         if self.faults:
             return None
@@ -383,7 +465,8 @@ class _Builder:
             folder=self.folder,
         )
 
-    def _section(self, tables: Mapping[str, Any], key: str, family: str, **given: Any) -> Any:
+    def section(self, tables: Mapping[str, Any], key: str, family: str, **given: Any) -> Any:
+        """Build one table of the file, if it is there; None, with the reasons in `faults`, if it is refused."""
         return self._built(tables[key], family, key, **given) if key in tables else None
 
     def _built(self, table: Any, family: str, path: str, **given: Any) -> Any:
@@ -396,12 +479,13 @@ class _Builder:
             return None
         parameters = {n: p for n, p in inspect.signature(factory).parameters.items() if n not in given}
         required = {n for n, p in parameters.items() if p.default is p.empty}
-        known = [*parameters, *(["kind"] if family not in ("journey", "passage", "loads", "contact") else [])]
+        known = [*parameters, *(["kind"] if family not in DEFAULT_KIND or len(KINDS[family]) > 1 else [])]
         broken = self._check_keys(f"{path}.", table, known, required)
         arguments: dict[str, Any] = dict.fromkeys(broken)
         for key in parameters.keys() & table.keys():
             before = len(self.faults)
-            arguments[key] = self._argument(family, key, table[key], parameters[key].annotation, f"{path}.{key}")
+            annotation = parameters[key].annotation
+            arguments[key] = self._argument(family, key, table[key], annotation, f"{path}.{key}", given)
             if len(self.faults) > before:
                 broken.add(key)
         try:
@@ -416,7 +500,7 @@ class _Builder:
             if not broken:
                 self.faults.append(Fault(f"{path}:", str(error)))
             return None
-        except TypeError:
+        except (TypeError, AttributeError):
             # A stand-in may be of no use to a function that does not check first; its own errors are defects.
             if not broken:
                 raise
@@ -435,7 +519,9 @@ class _Builder:
             return kinds[kind]
         return None
 
-    def _argument(self, family: str, key: str, value: Any, annotation: str, path: str) -> Any:
+    def _argument(
+        self, family: str, key: str, value: Any, annotation: str, path: str, given: dict[str, Any]
+    ) -> Any:
         if key in TABLES:
             return self._built(value, TABLES[key], path)
         if (family, key) in TABLE_LISTS:
@@ -443,7 +529,9 @@ class _Builder:
                 self.faults.append(Fault(path, f"must be one or more tables [[{path}]]"))
                 return None
             listed = TABLE_LISTS[family, key]
-            return [self._built(table, listed, f"{path}[{n}]") for n, table in enumerate(value)]
+            # Parts of a road cover what the road has to cover.
+            passed = given if listed == family else {}
+            return [self._built(table, listed, f"{path}[{n}]", **passed) for n, table in enumerate(value)]
         if annotation == "Path":
             if not isinstance(value, str) or "\0" in value:
                 self.faults.append(Fault(path, f"must be the name of a file, got {shown(value)}"))

@@ -29,6 +29,7 @@ COUPLED: dict[str, Label] = {
     "contact": Label(("contact",), "1", "number of the contact", coordinate=True),
     "position": Label(("contact",), "m", "position of the contact, ahead positive", coordinate=True),
     "path": Label(("contact",), "1", "path of the profile that the contact follows", coordinate=True),
+    "contact_name": Label(("contact",), "1", "name of the contact", coordinate=True),
     "dof": Label(("dof",), "1", "degree of freedom", coordinate=True),
     "dof_unit": Label(("dof",), "1", "unit of the degree of freedom", coordinate=True),
     "contact_force": Label(("time", "contact"), "N", "dynamic contact force, compression positive"),
@@ -52,6 +53,60 @@ LOADED: dict[str, Label] = {
     "deflection": Label(("time", "point"), "m", "deflection of the guideway at the observer, down"),
 }
 
+_OVER_FREQUENCY: dict[str, Label] = {
+    "frequency": Label(("frequency",), "Hz", "frequency", coordinate=True),
+    "omega": Label(("frequency",), "rad/s", "angular frequency", coordinate=True),
+    **{name: COUPLED[name] for name in ("contact", "position", "path", "contact_name", "dof", "dof_unit")},
+}
+
+# The response per unit of roughness under one contact.
+TRANSFER: dict[str, Label] = {
+    **_OVER_FREQUENCY,
+    "source": Label(("source",), "1", "contact under which the road is rough", coordinate=True),
+    "contact_force": Label(("frequency", "contact", "source"), "N/m", "dynamic contact force, compression"),
+    "deflection": Label(("frequency", "contact", "source"), "m/m", "deflection of the guideway under the contact"),
+    "motion": Label(("frequency", "dof", "source"), "m/m or rad/m", "motion, down, nose down"),
+    "acceleration": Label(("frequency", "dof", "source"), "1/s2 or rad/s2/m", "acceleration, down, nose down"),
+}
+
+# What a random response consists of, each quantity about the steady state: where it is told, units, words.
+RANDOM_QUANTITIES = {
+    "contact_force": ("contact", ("N",), "dynamic contact force"),
+    "deflection": ("contact", ("m",), "dynamic deflection of the guideway under the contact"),
+    "motion": ("dof", ("m", "rad"), "motion"),
+    "acceleration": ("dof", ("m/s2", "rad/s2"), "acceleration"),
+    "roughness": ("contact", ("m",), "elevation of the road under the contact"),
+}
+
+
+def _random_labels(name: str, place: str, units: tuple[str, ...], words: str) -> dict[str, Label]:
+    """Spectral density and statistics of one quantity."""
+    unit = " or ".join(units)
+    squared = " or ".join(f"({unit})2/Hz" if "/" in unit else f"{unit}2/Hz" for unit in units)
+    return {
+        f"{name}_density": Label(("frequency", place), squared, f"one-sided spectral density of the {words}"),
+        f"{name}_rms": Label((place,), unit, f"root mean square of the {words}"),
+        f"{name}_crossing_rate": Label((place,), "1/s", f"upcrossings of zero per second of the {words}"),
+        f"{name}_peak_rate": Label((place,), "1/s", f"maxima per second of the {words}"),
+        f"{name}_irregularity": Label((place,), "1", f"crossing rate over peak rate of the {words}"),
+        f"{name}_expected_peak": Label((place,), unit, f"expected largest value in the exposure of the {words}"),
+    }
+
+
+# The stationary response to a random road.
+RANDOM: dict[str, Label] = {
+    **_OVER_FREQUENCY,
+    "bandwidth": Label(("frequency",), "Hz", "what the density at a frequency stands for", coordinate=True),
+    "static_load": COUPLED["static_load"],
+    "static_deflection": COUPLED["static_deflection"],
+    "dynamic_load_coefficient": Label(("contact",), "1", "root mean square of the dynamic over the static force"),
+    "lift_off_share": Label(("contact",), "1", "share of the time in which the total contact force is tensile"),
+    "lift_off_rate": Label(("contact",), "1/s", "how often the total contact force turns tensile"),
+    "weighted_acceleration": Label(("dof",), "m/s2 or rad/s2", "frequency-weighted root mean square acceleration"),
+}
+for _name, (_place, _units, _words) in RANDOM_QUANTITIES.items():
+    RANDOM |= _random_labels(_name, _place, _units, _words)
+
 
 def labelled(
     values: Mapping[str, ArrayLike], schema: Mapping[str, Label], attributes: Mapping[str, str | float | int]
@@ -63,7 +118,7 @@ def labelled(
     values : mapping of str to array_like
         Arrays by their name in the schema.
     schema : mapping of str to Label
-        `COUPLED` or `LOADED`.
+        `COUPLED`, `LOADED`, `TRANSFER` or `RANDOM`.
     attributes : mapping of str to str, float or int
         Attributes of the Dataset, text or numbers only: nothing else survives netCDF.
 

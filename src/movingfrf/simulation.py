@@ -123,7 +123,7 @@ def simulate(
     excitation = excite(
         profile,
         vehicle.positions,
-        [contact.path for contact in vehicle.contacts],
+        vehicle.paths,
         speed=speed,
         samples=samples,
         time_step=time_step,
@@ -131,7 +131,7 @@ def simulate(
         blend=blend,
     )
     spectra = grid.to_spectra(excitation.roughness)
-    roughness = _averaged(vehicle, spectra, speed, grid)
+    roughness = _enveloped(vehicle, spectra, speed, grid)
 
     progress("steady state", 0.0)
     system = joined(guideway, vehicle, speed)
@@ -183,6 +183,8 @@ def simulate(
         "datum": excitation.datum,
         "critical_speed": critical_speed,
         "guideway": repr(guideway),
+        "profile": profile.source,
+        "profile_steps": "\n".join(profile.steps),
         "findings": find.announced(found),
     }
     return labelled(values, COUPLED, attributes)
@@ -326,7 +328,7 @@ def spectral_grid(journey: Journey, vehicle: Vehicle) -> SpectralGrid:
     ValueError
         If memory would not hold the result.
     """
-    slowest = float((-vehicle.poles.real).min())
+    slowest = float((-vehicle.poles.real).min(initial=np.inf))
     longest = max(LONGEST_SETTLING * journey.duration, LEAST_SETTLING * journey.time_step)
     settling = min(-np.log(SETTLED) / slowest, longest) if slowest > 0 else longest
     channels = len(vehicle.contacts) + len(vehicle.dof_names)
@@ -359,16 +361,16 @@ def require_record(duration: float, settling: float, time_step: float, channels:
     )
 
 
-def _averaged(vehicle: Vehicle, spectra: np.ndarray, speed: float, grid: SpectralGrid) -> np.ndarray:
-    """Roughness averaged over each contact's footprint L: a factor sin(a)/a with a = ωL/2v."""
-    lengths = np.array([contact.footprint for contact in vehicle.contacts])
-    if not lengths.any():
+def _enveloped(vehicle: Vehicle, spectra: np.ndarray, speed: float, grid: SpectralGrid) -> np.ndarray:
+    """Roughness as contacts see it that do not touch the profile at one point only."""
+    seeing = [number for number, contact in enumerate(vehicle.contacts) if contact.envelops]
+    if not seeing:
         return spectra
-    averaged = spectra.copy(order="K")
-    for contact in np.flatnonzero(lengths):
-        phase = grid.omega() * lengths[contact] / (2 * speed)
-        averaged[:, contact] *= np.sin(phase) / phase
-    return averaged
+    enveloped = spectra.copy(order="K")
+    wavenumber = grid.omega() / speed
+    for number in seeing:
+        enveloped[:, number] *= vehicle.contacts[number].enveloping(wavenumber)
+    return enveloped
 
 
 def _provenance(title: str) -> dict[str, str | float | int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._checks import ComplexArray, FloatArray, SolveError
-from movingfrf.coupling import Sample, System
+from movingfrf.coupling import Sample, System, unthreaded
 from movingfrf.vehicles.base import Vehicle
 
 # The path runs this far below the real axis, relative to the frequency: a growth per radian too slow to see.
@@ -22,12 +22,25 @@ LARGEST_CHANGE, HALVINGS, MOST_INTERVALS = 0.9, 24, 20_000
 # Natural frequencies further apart than this ratio leave no digits to the lower ones.
 WIDEST = 1e-9
 
+# Frequencies between which a mass that follows the road, without vibrations of its own, is looked at [rad/s].
+NO_POLES = 1.0, 1e3
+
+# Poles closer to each other than this share of their width need no points of their own; how many are compared.
+ALIKE, MOST_ALIKE = 0.1, 8
+
+# Points of the quarter circle from the end of the path down to the imaginary axis.
+ON_ARC = 24
+
 # Points with the smallest determinant from which a growing vibration is searched, to name it.
 SEARCHES = 12
 
 
 def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
     """Frequencies from zero to far above the vehicle's poles [rad/s].
+
+    With elastic contacts det(I + D G) is a positive constant there. With rigid ones it grows like a power of the
+    frequency and keeps turning along the arc that closes the contour, so the path follows the arc down to the
+    imaginary axis, where the determinant is real and positive.
 
     Parameters
     ----------
@@ -47,7 +60,7 @@ def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
         If the vehicle's natural frequencies lie too far apart for floating-point numbers.
     """
     poles = vehicle.poles
-    slowest, fastest = np.abs(poles).min(), np.abs(poles).max()
+    slowest, fastest = _extent(poles)
     if not slowest > WIDEST * fastest:
         raise SolveError(
             f"the vehicle's natural frequencies, from {slowest / (2 * np.pi):.3g} to "
@@ -55,10 +68,29 @@ def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
         )
     lowest, highest = 1e-2 * slowest, 1e2 * fastest
     base = np.geomspace(lowest, highest, int(np.log10(highest / lowest) * PER_DECADE) + 2)
-    path = np.unique(np.concatenate([[0.0], base, *map(_around, poles)]))
+    path = np.unique(np.concatenate([[0.0], base, *map(_around, _distinct(poles))]))
     if path.size % 2 == 0:
         path = np.append(path, 2 * highest)
-    return path * (1 - 1j * BELOW_AXIS)
+    along = path * (1 - 1j * BELOW_AXIS)
+    if not np.isinf(vehicle.springs).any():
+        return along
+    return np.concatenate([along, path[-1] * np.exp(-0.5j * np.pi * np.arange(1, ON_ARC + 1) / ON_ARC)])
+
+
+def _extent(poles: ComplexArray) -> tuple[float, float]:
+    """Magnitude of the slowest and the fastest pole [rad/s]."""
+    return (float(np.abs(poles).min()), float(np.abs(poles).max())) if poles.size else NO_POLES
+
+
+def _distinct(poles: ComplexArray) -> ComplexArray:
+    """Poles without those that repeat others, as the cars of a train do."""
+    kept: list[complex] = []
+    for pole in poles.tolist():
+        # Ascending in magnitude, so that those alike are not far behind.
+        alike = (abs(pole - other) < ALIKE * abs(pole.real) for other in kept[-MOST_ALIKE:])
+        if not any(alike):
+            kept.append(pole)
+    return np.array(kept, complex)
 
 
 def _around(pole: complex) -> FloatArray:
@@ -73,7 +105,7 @@ def growing_vibrations(system: System, along_axis: Sample) -> int:
     """Count the vibrations of the coupled system that grow in time, conjugate pairs counted twice.
 
     Every zero of det(I + D G) with Im ω < 0 turns the phase of the determinant by one full circle along the
-    real axis; towards infinity the determinant is a positive constant.
+    real axis, and on along the arc where the path has one; it ends where the determinant is real and positive.
 
     Parameters
     ----------
@@ -138,7 +170,9 @@ def require_stable(system: System, along_axis: Sample) -> None:
     SolveError
         If a vibration grows, with its frequency and growth where they can be found.
     """
-    if growing_vibrations(system, along_axis):
+    with unthreaded(len(system.vehicle.contacts)):
+        growing = growing_vibrations(system, along_axis)
+    if growing:
         raise SolveError(
             f"vehicle and guideway are unstable together at {system.speed:g} m/s: {_described(system)}; "
             "the motion feeds a vibration that grows without bound, so there is no steady response"
@@ -147,16 +181,16 @@ def require_stable(system: System, along_axis: Sample) -> None:
 
 def _described(system: System) -> str:
     """Describe the fastest growing vibration: a zero of the determinant in the lower half-plane."""
-    magnitudes = np.abs(system.vehicle.poles)
-    across = np.geomspace(0.1 * magnitudes.min(), 10 * magnitudes.max(), 80)
+    slowest, fastest = _extent(system.vehicle.poles)
+    across = np.geomspace(0.1 * slowest, 10 * fastest, 80)
     omega = (across[:, None] * (1 - 1j * np.geomspace(1e-4, 2.0, 16))).ravel()
     size = np.abs(np.linalg.det(system.sample(omega).matrices()))
     zeros = [_zero(system, start) for start in omega[np.argsort(size)[:SEARCHES]]]
     growing = [zero for zero in zeros if zero is not None]
     if not growing:
         return "a vibration grows"
-    fastest = min(growing, key=lambda zero: zero.imag)
-    return f"a vibration of {fastest.real / (2 * np.pi):.4g} Hz grows as e^({-fastest.imag:.4g} t)"
+    worst = min(growing, key=lambda zero: zero.imag)
+    return f"a vibration of {worst.real / (2 * np.pi):.4g} Hz grows as e^({-worst.imag:.4g} t)"
 
 
 def _zero(system: System, start: complex) -> complex | None:

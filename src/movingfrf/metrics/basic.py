@@ -1,15 +1,21 @@
-"""First measures of a result: root mean square, peak, dynamic load coefficient."""
+"""Measures of a result: the usual ones, and all of them."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import FloatArray
+from movingfrf._checks import Checks, FloatArray, checking
+from movingfrf.metrics.comfort import WEIGHTINGS, Comfort, felt
+from movingfrf.metrics.fatigue import equivalent_amplitude
+from movingfrf.metrics.loads import contact_loss, dynamic_load_coefficient, road_stress_factor, road_wear
 
 if TYPE_CHECKING:
     import xarray as xr
+
+CEBON, EISENMANN, CYCLES = "Cebon 1999", "Eisenmann 1975", "ASTM E1049"
 
 
 class Measure(NamedTuple):
@@ -19,6 +25,7 @@ class Measure(NamedTuple):
     name: str  # which measure
     value: float
     units: str
+    standard: str = ""  # the standard or the source that defines it, where the name alone does not
 
 
 def measures(result: xr.Dataset) -> list[Measure]:
@@ -35,8 +42,9 @@ def measures(result: xr.Dataset) -> list[Measure]:
         Per contact: static load [N], root mean square and peak of the dynamic force [N], smallest total force
         [N], dynamic load coefficient (root mean square over static load); static deflection [m], root mean
         square of the dynamic and peak of the total deflection [m]. Per degree of freedom: root mean square and
-        peak of the acceleration [m/s² or rad/s²]. Per observation point under prescribed loads: root mean
-        square and peak of the deflection [m].
+        peak of the acceleration, and its root mean square as weighted by ISO 2631-1, with Wk if it is a
+        translation and We if it is a rotation [m/s² or rad/s²]. Per observation point under prescribed loads: root
+        mean square and peak of the deflection [m].
 
     References
     ----------
@@ -48,29 +56,140 @@ def measures(result: xr.Dataset) -> list[Measure]:
             for point, deflection in zip(result.point.values, result.deflection.values.T, strict=True)
             for measure in _rms_and_peak(f"deflection at {point:g} m", deflection, "m")
         ]
+    contacts, dofs = range(result.sizes["contact"]), range(result.sizes["dof"])
+    coefficients = dynamic_load_coefficient(result)
+    return [
+        *(measure for contact in contacts for measure in _of_force(result, contact, coefficients)),
+        *(measure for contact in contacts for measure in _of_deflection(result, contact)),
+        *(measure for dof in dofs for measure in _of_acceleration(result, dof, "Wk")[:3]),
+    ]
+
+
+def assess(
+    result: xr.Dataset,
+    *,
+    contacts: Sequence[int] | None = None,
+    dofs: Sequence[str] | None = None,
+    weighting: str = "Wk",
+    slope: float | None = None,
+) -> list[Measure]:
+    """Measure a coupled response in every way that the package knows.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What `simulate`, `cdfm` or `sim` returned.
+    contacts : sequence of int, optional
+        Numbers of the contacts; all by default.
+    dofs : sequence of str, optional
+        Names of the degrees of freedom; all by default.
+    weighting : str
+        Frequency weighting of translations; rotations have We.
+    slope : float, optional
+        Exponent of an S-N curve; adds the amplitude of the steady cycling, once a second, that would do the same
+        damage as each contact force.
+
+    Returns
+    -------
+    list of Measure
+        In addition to `measures`: road stress factor, share of the time and longest time without contact [s] of
+        every contact; peak, crest factor, MTVV [m/s²] and VDV [m/s^1.75] of every weighted acceleration (rad for m
+        if it is a rotation); and, unless contacts are chosen, the aggregate fourth-power force on each path that
+        95 % of the road's points bear at most, over that of the static loads.
+
+    Raises
+    ------
+    ValueError
+        If the result is none of a vehicle, there is no such contact, degree of freedom or weighting, or a slope is
+        given and the extra `fatigue` is not installed.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> car = mf.quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                      suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> hump = mf.bump(height=0.02, width=1.0, at=5.0, length=30.0)
+    >>> result = mf.simulate(mf.RigidGuideway(), car, hump, speed=10.0, duration=2.0, blend=0.0)
+    >>> [measure.name for measure in mf.assess(result, contacts=[], dofs=["body"])][-2:]
+    ['MTVV', 'VDV']
+    """
+    with checking() as check:
+        if "contact_force" not in result:
+            check.refuse("result", "must be the coupled response of a vehicle, with its contact forces")
+        else:
+            _check_chosen(check, "contacts", contacts, list(range(result.sizes["contact"])))
+            _check_chosen(check, "dofs", dofs, result.dof.values.tolist())
+        if weighting not in WEIGHTINGS:
+            check.refuse("weighting", f"must be one of {', '.join(WEIGHTINGS)}, got {weighting!r}")
+        if slope is not None:
+            check.positive("slope", slope, "1")
+    names = result.dof.values.tolist()
+    numbers = range(result.sizes["contact"]) if contacts is None else contacts
+    coefficients, loss = dynamic_load_coefficient(result), contact_loss(result)
+    stress = road_stress_factor(coefficients)
     found: list[Measure] = []
-    loads = result.static_load.values.tolist()
-    for contact, (load, force) in enumerate(zip(loads, result.contact_force.values.T, strict=True)):
+    for contact in numbers:
         quantity = f"contact {contact} force"
         found += [
-            Measure(quantity, "static", load, "N"),
-            Measure(quantity, "dynamic rms", _rms(force), "N"),
-            Measure(quantity, "dynamic peak", float(np.abs(force).max()), "N"),
-            Measure(quantity, "smallest total", load + float(force.min()), "N"),
-            Measure(quantity, "dynamic load coefficient", _rms(force) / load if load else float("inf"), "1"),
+            *_of_force(result, contact, coefficients),
+            Measure(quantity, "road stress factor", float(stress[contact]), "1", EISENMANN),
+            Measure(quantity, "share of time without contact", float(loss.share[contact]), "1"),
+            Measure(quantity, "longest loss of contact", float(loss.longest[contact]), "s"),
         ]
-    sags = result.static_deflection.values.tolist()
-    for contact, (sag, deflection) in enumerate(zip(sags, result.deflection.values.T, strict=True)):
-        quantity = f"contact {contact} deflection"
+        if slope is not None:
+            force = result.contact_force.values[:, contact]
+            duration = force.size * float(result.attrs["time_step"])
+            amplitude = equivalent_amplitude(force, slope=slope, duration=duration)
+            found.append(Measure(quantity, "damage-equivalent amplitude at 1 Hz", amplitude, "N", CYCLES))
+    for contact in numbers:
+        found += _of_deflection(result, contact)
+    if contacts is None:
         found += [
-            Measure(quantity, "static", sag, "m"),
-            Measure(quantity, "dynamic rms", _rms(deflection - sag), "m"),
-            Measure(quantity, "peak", float(np.abs(deflection).max()), "m"),
+            Measure(f"path {path} wear", "95th percentile of ΣP⁴ over static", float(ratio), "1", CEBON)
+            for path, ratio in zip(np.unique(result.path.values), road_wear(result), strict=True)
         ]
-    for number, acceleration in enumerate(result.acceleration.values.T):
-        unit = f"{result.dof_unit.values[number]}/s²"
-        found += _rms_and_peak(f"{result.dof.values[number]} acceleration", acceleration, unit)
+    for dof in names if dofs is None else dofs:
+        found += _of_acceleration(result, names.index(dof), weighting)
     return found
+
+
+def _of_force(result: xr.Dataset, contact: int, coefficients: FloatArray) -> list[Measure]:
+    quantity, force = f"contact {contact} force", result.contact_force.values[:, contact]
+    load = float(result.static_load.values[contact])
+    return [
+        Measure(quantity, "static", load, "N"),
+        Measure(quantity, "dynamic rms", _rms(force), "N"),
+        Measure(quantity, "dynamic peak", float(np.abs(force).max()), "N"),
+        Measure(quantity, "smallest total", load + float(force.min()), "N"),
+        Measure(quantity, "dynamic load coefficient", float(coefficients[contact]), "1", CEBON),
+    ]
+
+
+def _of_deflection(result: xr.Dataset, contact: int) -> list[Measure]:
+    quantity, deflection = f"contact {contact} deflection", result.deflection.values[:, contact]
+    sag = float(result.static_deflection.values[contact])
+    return [
+        Measure(quantity, "static", sag, "m"),
+        Measure(quantity, "dynamic rms", _rms(deflection - sag), "m"),
+        Measure(quantity, "peak", float(np.abs(deflection).max()), "m"),
+    ]
+
+
+def _of_acceleration(result: xr.Dataset, number: int, weighting: str) -> list[Measure]:
+    """As it is first, then as people would feel it."""
+    quantity, acceleration = f"{result.dof.values[number]} acceleration", result.acceleration.values[:, number]
+    unit = str(result.dof_unit.values[number])
+    name = weighting if unit == "m" else "We"
+    standard = WEIGHTINGS[name].standard
+    weighted: Comfort = felt(acceleration, float(result.attrs["time_step"]), name)
+    return [
+        *_rms_and_peak(quantity, acceleration, f"{unit}/s²"),
+        Measure(quantity, "weighted rms", weighted.rms, f"{unit}/s²", f"{standard}, {name}"),
+        Measure(quantity, "weighted peak", weighted.peak, f"{unit}/s²", f"{standard}, {name}"),
+        Measure(quantity, "crest factor", weighted.crest_factor, "1", f"{standard}, {name}"),
+        Measure(quantity, "MTVV", weighted.mtvv, f"{unit}/s²", f"{standard}, {name}"),
+        Measure(quantity, "VDV", weighted.vdv, f"{unit}/s^1.75", f"{standard}, {name}"),
+    ]
 
 
 def _rms_and_peak(quantity: str, values: FloatArray, units: str) -> list[Measure]:
@@ -82,3 +201,9 @@ def _rms_and_peak(quantity: str, values: FloatArray, units: str) -> list[Measure
 
 def _rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2)))
+
+
+def _check_chosen(check: Checks, name: str, chosen: Sequence[object] | None, there: list[object]) -> None:
+    for each in chosen or ():
+        if each not in there:
+            check.refuse(name, f"must be among {', '.join(map(str, there))}, got {each!r}")

@@ -14,7 +14,7 @@ from movingfrf._checks import FloatArray, SolveError, checking, require_memory
 from movingfrf.journey import Journey
 from movingfrf.progress import Progress, silent
 from movingfrf.reference.finite_guideway import FiniteGuideway
-from movingfrf.reference.marching import SOLVED, Iteration, March, State, law_of, no_vehicle
+from movingfrf.reference.marching import SOLVED, Iteration, March, State, law_of, no_vehicle, stiffness_at_rest
 from movingfrf.reference.requirements import (
     require_across,
     require_apart,
@@ -459,7 +459,7 @@ def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress
     State
         Road and vehicle at the end of the run.
     """
-    held = vehicle.dynamic_stiffness(np.zeros(1, complex), None)[0].real
+    held = stiffness_at_rest(march.law)
     held = np.where(np.abs(held) < ROUNDING * np.abs(march.law.springs).max(), 0.0, held)
     sags = _sags(march, -steps)
     yields = march.road.rows(march.places(-steps), 0, march.contacts_across) @ sags

@@ -14,7 +14,7 @@ from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.journey import Journey
 from movingfrf.progress import Progress, silent
 from movingfrf.reference.coupled import seen_in_time
-from movingfrf.reference.marching import STRIDE, Law, law_of, numba_is_there
+from movingfrf.reference.marching import STRIDE, Law, law_of, numba_is_there, stiffness_at_rest
 from movingfrf.reference.requirements import require_kinds
 from movingfrf.reference.schemes import SCHEMES
 from movingfrf.roughness.profiles import Profile
@@ -101,10 +101,10 @@ def duhamel(
     excitation = seen_in_time(profile, vehicle, journey)
     assert excitation.rate is not None
     yields = road.moving_frf(speed=speed, omega=[0.0], **vehicle.offsets)[0].real
-    held = vehicle.dynamic_stiffness(np.zeros(1, complex), None)[0].real
+    law = law_of(vehicle)
+    held = stiffness_at_rest(law)
     load = np.linalg.solve(np.eye(positions.size) + held @ yields, vehicle.static_loads)
     steady = yields @ load
-    law = law_of(vehicle)
     samples = journey.samples
     record = [
         np.zeros((width, samples)) for width in (positions.size, positions.size, len(law.mass), len(law.mass))

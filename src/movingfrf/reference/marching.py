@@ -49,10 +49,23 @@ class Law(NamedTuple):
 
 def law_of(vehicle: Vehicle) -> Law:
     """Matrices of a vehicle without its contacts, and its contacts."""
-    springs = np.array([contact.stiffness for contact in vehicle.contacts])
-    dashpots = np.array([contact.damping for contact in vehicle.contacts])
+    if np.isinf(vehicle.springs).any():
+        raise ValueError(
+            "the vehicle has rigid contacts (stiffness = inf), which the time-stepping methods do not know: give "
+            "each contact a finite stiffness [N/m]"
+        )
     mass, damping, stiffness, contact_map = (np.ascontiguousarray(matrix) for matrix in vehicle.matrices)
-    return Law(mass, damping, stiffness, contact_map, springs, dashpots)
+    return Law(mass, damping, stiffness, contact_map, vehicle.springs, vehicle.dashpots)
+
+
+def stiffness_at_rest(law: Law) -> FloatArray:
+    """Force at the contacts per constant displacement below them [N/m], shape (contact, contact).
+
+    More of them than the vehicle has rigid motions share the weight as the road sags.
+    """
+    pushed = law.contact_map.T * law.springs
+    held = law.stiffness + pushed @ law.contact_map
+    return np.diag(law.springs) - pushed.T @ np.linalg.solve(held, pushed)
 
 
 def no_vehicle(contacts: int) -> Law:

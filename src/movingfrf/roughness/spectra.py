@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -24,8 +26,71 @@ SMOOTHING_EDGES = np.concatenate(
 )
 
 
+class Spectrum(Protocol):
+    """A roughness spectrum: how much elevation lies at which spatial frequency."""
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """Spatial frequencies between which there is content [cycle/m]."""
+        ...
+
+    def density(self, spatial_frequency: FloatArray) -> FloatArray:
+        """One-sided spectral density of the elevation, zero outside the band [m³]."""
+        ...
+
+    def variance_below(self, spatial_frequency: FloatArray) -> FloatArray:
+        """Variance of the elevation up to a spatial frequency [m²]."""
+        ...
+
+
+class BandLimited(ABC):
+    """A formula and its integral, cut off at the ends of a band: all that a spectrum needs."""
+
+    __slots__ = ()
+    band: tuple[float, float]
+
+    @abstractmethod
+    def _formula(self, n: FloatArray) -> FloatArray:
+        """Spectral density within the band [m³]."""
+
+    @abstractmethod
+    def _integral(self, low: float, high: FloatArray) -> FloatArray:
+        """Integral of the formula between two places within the band [m²]."""
+
+    def density(self, spatial_frequency: FloatArray) -> FloatArray:
+        """One-sided spectral density of the elevation, zero outside the band.
+
+        Parameters
+        ----------
+        spatial_frequency : ndarray
+            Spatial frequency [cycle/m].
+
+        Returns
+        -------
+        ndarray
+            G_d [m³].
+        """
+        n = np.clip(spatial_frequency, *self.band)
+        return np.where(n == spatial_frequency, self._formula(n), 0.0)
+
+    def variance_below(self, spatial_frequency: FloatArray) -> FloatArray:
+        """Variance of the elevation from the lower end of the band up to a spatial frequency.
+
+        Parameters
+        ----------
+        spatial_frequency : ndarray
+            Spatial frequency [cycle/m].
+
+        Returns
+        -------
+        ndarray
+            ∫ G_d dn [m²].
+        """
+        return self._integral(self.band[0], np.clip(spatial_frequency, *self.band))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class IsoRoad:
+class IsoRoad(BandLimited):
     """Roughness spectrum of ISO 8608, G_d(n) = G_d(n₀) (n/n₀)^−w with n₀ = 0.1 cycle/m.
 
     Parameters
@@ -62,16 +127,26 @@ class IsoRoad:
         """Check the parameters."""
         with checking() as check:
             check.positive("roughness", self.roughness, "m³")
-            band = _checked_band(check, self.waviness, self.band)
+            check_waviness(check, self.waviness)
+            band = checked_band(check, self.band)
         object.__setattr__(self, "band", band)
 
+    def __str__(self) -> str:
+        """Say which spectrum it is, in words."""
+        return (
+            f"ISO 8608 class {iso_class(self.roughness)}, {self.roughness:g} m³ at 0.1 cycle/m, waviness "
+            f"{self.waviness:g}, {band_in_words(self.band)}"
+        )
+
     @classmethod
-    def of_class(cls, letter: str, *, waviness: float = 2.0, band: tuple[float, float] = (0.01, 10.0)) -> IsoRoad:
+    def of_class(
+        cls, road_class: str, *, waviness: float = 2.0, band: tuple[float, float] = (0.01, 10.0)
+    ) -> IsoRoad:
         """Road of an ISO 8608 class, at the class's geometric centre.
 
         Parameters
         ----------
-        letter : str
+        road_class : str
             Class, A (smooth) to H (rough).
         waviness : float
             Exponent w.
@@ -89,57 +164,54 @@ class IsoRoad:
             If there is no such class.
         """
         with checking() as check:
-            if not isinstance(letter, str) or letter.upper() not in CLASS_CENTRES:
-                check.refuse("road_class", f"must be one of {', '.join(CLASS_CENTRES)}, got {letter!r}")
-            _checked_band(check, waviness, band)
-        return cls(roughness=CLASS_CENTRES[letter.upper()], waviness=waviness, band=band)
+            if not isinstance(road_class, str) or road_class.upper() not in CLASS_CENTRES:
+                check.refuse("road_class", f"must be one of {', '.join(CLASS_CENTRES)}, got {road_class!r}")
+            check_waviness(check, waviness)
+            checked_band(check, band)
+        return cls(roughness=CLASS_CENTRES[road_class.upper()], waviness=waviness, band=band)
 
-    def density(self, spatial_frequency: FloatArray) -> FloatArray:
-        """One-sided spectral density of the elevation, zero outside the band.
+    def _formula(self, n: FloatArray) -> FloatArray:
+        return self.roughness * (n / REFERENCE_FREQUENCY) ** -self.waviness
 
-        Parameters
-        ----------
-        spatial_frequency : ndarray
-            Spatial frequency [cycle/m].
-
-        Returns
-        -------
-        ndarray
-            G_d [m³].
-        """
-        inside = (spatial_frequency >= self.band[0]) & (spatial_frequency <= self.band[1])
-        ratio = np.where(inside, spatial_frequency, REFERENCE_FREQUENCY) / REFERENCE_FREQUENCY
-        return np.where(inside, self.roughness * ratio**-self.waviness, 0.0)
-
-    def variance_below(self, spatial_frequency: FloatArray) -> FloatArray:
-        """Variance of the elevation from the lower end of the band up to a spatial frequency.
-
-        Parameters
-        ----------
-        spatial_frequency : ndarray
-            Spatial frequency [cycle/m].
-
-        Returns
-        -------
-        ndarray
-            ∫ G_d dn [m²].
-        """
-        low = self.band[0]
-        n = np.clip(spatial_frequency, low, self.band[1])
-        power = 1 - self.waviness
-        scale = self.roughness * REFERENCE_FREQUENCY**self.waviness
-        if power == 0:
-            return scale * np.log(n / low)
-        return scale * (n**power - low**power) / power
+    def _integral(self, low: float, high: FloatArray) -> FloatArray:
+        return power_integral(self.roughness * REFERENCE_FREQUENCY**self.waviness, self.waviness, low, high)
 
 
-def _checked_band(check: Checks, waviness: float, band: tuple[float, float]) -> tuple[float, float]:
+def power_integral(
+    scale: FloatArray | float, exponent: FloatArray | float, low: FloatArray | float, high: FloatArray | float
+) -> FloatArray:
+    """∫ scale · n^−w dn from `low` to `high`, for an exponent w of any size.
+
+    Examples
+    --------
+    >>> power_integral(2.0, 2.0, 1.0, np.array([2.0, 4.0])).tolist()
+    [1.0, 1.5]
+    """
+    power = 1 - np.asarray(exponent, float)
+    logarithm = power == 0
+    safe = np.where(logarithm, 1.0, power)
+    return np.where(
+        logarithm, scale * np.log(np.divide(high, low)), scale * (np.power(high, safe) - np.power(low, safe)) / safe
+    )
+
+
+def check_waviness(check: Checks, waviness: float) -> None:
+    """Demand an exponent whose powers do not overflow."""
     if abs(check.finite("waviness", waviness, "1")) > LARGEST_WAVINESS:
         check.refuse("waviness", f"must lie within ±{LARGEST_WAVINESS:g}, got {waviness!r}")
+
+
+def checked_band(check: Checks, band: tuple[float, float]) -> tuple[float, float]:
+    """Demand two increasing positive frequencies."""
     low, high = check.pair("band", band, "cycle/m")
     if low >= high:
         check.refuse("band", f"must be two increasing frequencies, got {band!r} cycle/m")
     return low, high
+
+
+def band_in_words(band: tuple[float, float]) -> str:
+    """Write a band with its unit."""
+    return f"{band[0]:g} to {band[1]:g} cycle/m"
 
 
 def iso_class(roughness: float) -> str:

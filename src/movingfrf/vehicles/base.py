@@ -4,62 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, NotRequired, TypedDict
+from typing import NotRequired, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import Checks, ComplexArray, FloatArray, checking
+from movingfrf._checks import Checks, ComplexArray, FloatArray, NumberArray, checking
+from movingfrf.vehicles.contact import Contact
+from movingfrf.vehicles.dynamics import Dynamics, Matrices, held, parts, split
 
 # Standard acceleration of free fall as the project fixes it [m/s²].
 GRAVITY = 9.81
 
-# Above this condition number of the modal matrix (a defective or nearly defective mode) the modes no longer
-# carry the digits and each frequency is solved directly.
-WORST_MODAL_CONDITION = 1e6
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Contact:
-    """Where and how a vehicle touches the guideway: a spring and a dashpot side by side.
-
-    Parameters
-    ----------
-    position : float
-        Ahead of the vehicle's reference point [m], positive in the direction of travel.
-    stiffness : float
-        Contact (tyre) stiffness [N/m].
-    damping : float
-        Contact damping [N s/m].
-    path : int
-        Number of the profile's path that the contact follows.
-    across : float
-        Position across the guideway, left of its centre line [m].
-    footprint : float
-        Length over which the contact averages the profile [m].
-
-    Raises
-    ------
-    ValueError
-        If the stiffness is not positive, or damping, path or footprint is negative.
-    """
-
-    position: float
-    stiffness: float
-    damping: float = 0.0
-    path: int = 0
-    across: float = 0.0
-    footprint: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Check the parameters."""
-        with checking() as check:
-            check.finite("position", self.position, "m")
-            check.positive("stiffness", self.stiffness, "N/m")
-            check.not_negative("damping", self.damping, "N s/m")
-            check.whole("path", self.path)
-            check.finite("across", self.across, "m")
-            check.not_negative("footprint", self.footprint, "m")
+# Offsets between contacts that differ by less [m] are the same: the cars of a train have most of theirs in common.
+SAME_OFFSET_DIGITS = 9
 
 
 class Offsets(TypedDict):
@@ -69,14 +27,6 @@ class Offsets(TypedDict):
     # Of a vehicle with contacts beside the centre line only.
     across: NotRequired[FloatArray]
     source_across: NotRequired[FloatArray]
-
-
-class Modes(NamedTuple):
-    """Poles and residues of the vehicle on its contact springs, the guideway held still."""
-
-    poles: ComplexArray  # (mode,)
-    shapes: ComplexArray  # (dof, mode)
-    from_contacts: ComplexArray  # (mode, contact), what a force at a contact feeds into a mode
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -102,7 +52,8 @@ class Vehicle:
     ------
     ValueError
         If shapes disagree, a matrix is not symmetric or not definite as demanded, `vertical` is not a rigid
-        motion, or the contacts do not hold the vehicle up.
+        motion, the contacts do not hold the vehicle up, two rigid contacts prescribe the same motion, or no weight
+        reaches a contact.
     """
 
     mass: ArrayLike
@@ -116,7 +67,7 @@ class Vehicle:
     def __post_init__(self) -> None:
         """Check the parameters."""
         with checking() as check:
-            contacts, names = _contacts(check, self.contacts), _names(check, self.dof_names)
+            contacts, names = check.listed("contacts", self.contacts, Contact), _names(check, self.dof_names)
             dofs = len(names)
             checked: dict[str, object] = {"contacts": contacts, "dof_names": names}
             for name, unit in (("mass", "kg"), ("damping", "N s/m"), ("stiffness", "N/m")):
@@ -131,13 +82,25 @@ class Vehicle:
             object.__setattr__(self, name, value)
         with checking() as check:
             _check_free(check, self)
-            _check_held(check, self.held_stiffness)
+            _check_held(check, self)
+        with checking() as check:
+            _check_carried(check, self)
 
     # The fields as arrays: what the constructor stored.
     @property
     def matrices(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Mass, damping, stiffness and contact map as arrays."""
         return self.mass, self.damping, self.stiffness, self.contact_map  # type: ignore[return-value]
+
+    @property
+    def springs(self) -> FloatArray:
+        """Stiffness of each contact [N/m], `inf` where it is rigid."""
+        return np.array([contact.stiffness for contact in self.contacts], float)
+
+    @property
+    def dashpots(self) -> FloatArray:
+        """Damping of each contact [N s/m]."""
+        return np.array([contact.damping for contact in self.contacts], float)
 
     @property
     def positions(self) -> FloatArray:
@@ -150,40 +113,53 @@ class Vehicle:
         return np.array([contact.across for contact in self.contacts])
 
     @property
+    def paths(self) -> list[int]:
+        """Path of the profile that each contact follows."""
+        return [contact.path for contact in self.contacts]
+
+    @property
+    def coordinates(self) -> dict[str, ArrayLike]:
+        """Coordinates of a result by their names in the schema: contacts and degrees of freedom."""
+        return {
+            "contact": np.arange(len(self.contacts)),
+            "position": self.positions,
+            "path": np.array(self.paths),
+            "contact_name": np.array([contact.name for contact in self.contacts]),
+            "dof": np.array(self.dof_names),
+            "dof_unit": np.where(np.asarray(self.vertical) == 0, "rad", "m"),
+        }
+
+    @property
     def offsets(self) -> Offsets:
         """Offset of every contact from every contact, as a guideway's `moving_frf` takes them [m]."""
         ahead, across = self.positions, self.across
-        offsets: Offsets = {"ahead": ahead[:, None] - ahead}
+        offsets: Offsets = {"ahead": np.round(ahead[:, None] - ahead, SAME_OFFSET_DIGITS)}
         if across.any():
             offsets["across"] = across[:, None] - across
             offsets["source_across"] = np.broadcast_to(across, offsets["ahead"].shape)
         return offsets
 
     @property
-    def held_stiffness(self) -> FloatArray:
-        """K + Bᵀ K_t B: stiffness with the guideway held still [N/m]."""
-        _, _, stiffness, contact_map = self.matrices
-        return stiffness + contact_map.T * [contact.stiffness for contact in self.contacts] @ contact_map
-
-    @property
-    def held_damping(self) -> FloatArray:
-        """C + Bᵀ C_t B: damping with the guideway held still [N s/m]."""
-        _, damping, _, contact_map = self.matrices
-        return damping + contact_map.T * [contact.damping for contact in self.contacts] @ contact_map
+    def weights(self) -> FloatArray:
+        """Weight along each degree of freedom [N]."""
+        return GRAVITY * self.matrices[0] @ np.asarray(self.vertical)
 
     @property
     def static_loads(self) -> FloatArray:
         """Contact forces of the vehicle at rest on a rigid flat road [N]."""
-        mass, _, _, contact_map = self.matrices
-        sag = np.linalg.solve(self.held_stiffness, GRAVITY * mass @ np.asarray(self.vertical))
-        return np.array([contact.stiffness for contact in self.contacts]) * (contact_map @ sag)
+        impedance, rows, _ = self._held()
+        motion = split(self.matrices[3], np.isinf(self.springs))
+        assert motion is not None
+        sag = motion.free @ np.linalg.solve(
+            motion.free.T @ impedance.constant @ motion.free, motion.free.T @ self.weights
+        )
+        sprung = np.where(np.isinf(self.springs), 0.0, self.springs) * (rows @ sag)
+        return sprung + motion.prescribed.T @ (self.weights - impedance.constant @ sag)
 
     @property
     def poles(self) -> ComplexArray:
         """Poles on a rigid road [rad/s], one of each conjugate pair, by ascending magnitude."""
-        poles = np.linalg.eigvals(self._state_matrix()).astype(complex)
-        upper = poles[poles.imag >= 0]
-        return upper[np.argsort(np.abs(upper), kind="stable")]
+        return self.dynamics().poles
 
     @property
     def natural_frequencies(self) -> FloatArray:
@@ -195,139 +171,47 @@ class Vehicle:
         """Damping ratio of each pole, in the order of `natural_frequencies`; 1 for an overdamped mode."""
         return -self.poles.real / np.abs(self.poles)
 
-    def contact_stiffness(self, omega: ComplexArray) -> ComplexArray:
-        """k_t + iω c_t of each contact [N/m], shape (frequency, contact)."""
-        stiffness = np.array([contact.stiffness for contact in self.contacts])
-        damping = np.array([contact.damping for contact in self.contacts])
-        return (stiffness[:, None] + (1j * omega) * damping[:, None]).T
-
-    def modes(self) -> Modes | None:
-        """Poles and residues; None if a mode is defective, or so nearly that it carries no digits."""
-        mass, _, _, contact_map = self.matrices
-        dofs = len(mass)
-        poles, vectors = np.linalg.eig(self._state_matrix())
-        # Displacement and velocity in one unit each, else the condition number measures the units.
-        vectors[dofs:] /= np.abs(poles).max()
-        vectors /= np.linalg.norm(vectors, axis=0)
-        try:
-            inverse = np.linalg.inv(vectors)
-        except np.linalg.LinAlgError:
-            return None
-        if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < WORST_MODAL_CONDITION:
-            return None
-        into_modes = inverse[:, dofs:] @ np.linalg.solve(mass, contact_map.T) / np.abs(poles).max()
-        return Modes(poles, vectors[:dofs], into_modes)
-
-    def motion(self, omega: ComplexArray, force: ComplexArray, modes: Modes | None) -> ComplexArray:
-        """Motion of the vehicle on its contact springs, pushed at its contacts.
-
-        Parameters
-        ----------
-        omega : ndarray, shape (frequency,)
-            Angular frequency [rad/s].
-        force : ndarray, shape (frequency, contact)
-            Force on the vehicle at each contact [N], positive down: for a displacement d below the contact
-            (k_t + iω c_t) d.
-        modes : Modes or None
-            What `modes()` returned; None solves each frequency directly.
+    def dynamics(self) -> Dynamics:
+        """Prepare the vehicle to be asked what it does at its contacts at any frequency.
 
         Returns
         -------
-        ndarray, shape (frequency, dof)
-            Motion of each degree of freedom [m or rad].
+        Dynamics
+            Response and dynamic stiffness at the contacts.
         """
-        if modes is None:
-            generalised = force @ self.matrices[3]
-            return np.linalg.solve(self._impedance(omega), generalised[:, :, None])[:, :, 0]
-        # Frequency last while computing: the other axes are too short to loop over first.
-        modal = modes.from_contacts @ force.T
-        modal *= _admittance(omega, modes.poles)
-        return (modes.shapes @ modal).T
+        found = parts(*self.matrices, self.springs, self.dashpots)
+        return Dynamics(found, len(self.dof_names), len(self.contacts))
 
-    def receptance(self, omega: ComplexArray, modes: Modes | None) -> ComplexArray:
-        """Displacement of the vehicle at its contacts per force there, on its contact springs.
+    def enveloping(self, wavenumber: NumberArray) -> NumberArray:
+        """Share of a wave of the profile that each contact follows.
 
         Parameters
         ----------
-        omega : ndarray, shape (frequency,)
-            Angular frequency [rad/s].
-        modes : Modes or None
-            What `modes()` returned.
+        wavenumber : ndarray, shape (wave,)
+            Wavenumber of the profile [rad/m]; may be complex.
 
         Returns
         -------
-        ndarray, shape (frequency, contact, contact)
-            B A⁻¹ Bᵀ [m/N], with A the dynamic stiffness of the vehicle on its contact springs.
+        ndarray, shape (wave, contact)
+            1 for contacts that see one point of the profile; see `Contact.enveloping`.
         """
-        contact_map = self.matrices[3]
-        count = len(contact_map)
-        if modes is None:
-            return contact_map @ np.linalg.solve(self._impedance(omega), contact_map.T.astype(complex))
-        residues = (contact_map @ modes.shapes)[:, None, :] * modes.from_contacts.T
-        pairs = residues.reshape(count * count, -1) @ _admittance(omega, modes.poles)
-        return pairs.reshape(count, count, -1).transpose(2, 0, 1)
+        return np.stack([contact.enveloping(wavenumber) for contact in self.contacts], axis=1)
 
-    def dynamic_stiffness(self, omega: ComplexArray, modes: Modes | None) -> ComplexArray:
-        """Dynamic stiffness at the contacts, D = K_t − K_t B A⁻¹ Bᵀ K_t.
+    @property
+    def held_stiffness(self) -> FloatArray:
+        """Stiffness with the guideway held still, rigid contacts left out [N/m]."""
+        return self._held()[0].constant
 
-        It stays finite at rest, and moving all contacts as a rigid body costs nothing there.
-
-        Parameters
-        ----------
-        omega : ndarray, shape (frequency,)
-            Angular frequency [rad/s].
-        modes : Modes or None
-            What `modes()` returned.
-
-        Returns
-        -------
-        ndarray, shape (frequency, contact, contact)
-            Force that the guideway exerts on the vehicle per displacement below the contacts [N/m].
-        """
-        springs = self.contact_stiffness(omega)
-        carried = self.receptance(omega, modes) * springs[:, None, :]
-        return springs[:, :, None] * (np.eye(len(self.contacts)) - carried)
-
-    def _impedance(self, omega: ComplexArray) -> ComplexArray:
-        """Dynamic stiffness A of the vehicle on its contact springs, shape (frequency, dof, dof)."""
-        i_omega: ComplexArray = 1j * omega[:, None, None]
-        impedance: ComplexArray = i_omega * i_omega * self.matrices[0]
-        impedance += i_omega * self.held_damping + self.held_stiffness
-        return impedance
-
-    def _state_matrix(self) -> FloatArray:
-        mass = self.matrices[0]
-        rates = np.linalg.solve(mass, np.hstack([-self.held_stiffness, -self.held_damping]))
-        return np.vstack([np.hstack([np.zeros_like(mass), np.eye(len(mass))]), rates])
-
-
-def _admittance(omega: ComplexArray, poles: ComplexArray) -> ComplexArray:
-    """1/(iω − λ) for every pole λ, shape (mode, frequency); complex division would take most of the time."""
-    real = (1j * omega).real - poles.real[:, None]
-    imaginary = (1j * omega).imag - poles.imag[:, None]
-    inverse = np.square(real)
-    inverse += np.square(imaginary)
-    np.reciprocal(inverse, out=inverse)
-    admittance = np.empty(inverse.shape, complex)
-    np.multiply(real, inverse, out=admittance.real)
-    np.negative(inverse, out=inverse)
-    np.multiply(imaginary, inverse, out=admittance.imag)
-    return admittance
-
-
-def _contacts(check: Checks, contacts: Sequence[Contact]) -> tuple[Contact, ...]:
-    contacts = tuple(contacts) if isinstance(contacts, (list, tuple)) else ()
-    if not contacts or not all(isinstance(contact, Contact) for contact in contacts):
-        check.refuse("contacts", "must be a list of one or more Contact objects")
-        return ()
-    return contacts
+    def _held(self) -> tuple[Matrices, FloatArray, Matrices]:
+        mass, damping, stiffness, contact_map = self.matrices
+        return held(Matrices(stiffness, damping, mass), contact_map, self.springs, self.dashpots)
 
 
 def _names(check: Checks, names: Sequence[str]) -> tuple[str, ...]:
-    names = tuple(names) if isinstance(names, (list, tuple)) else ()
-    if not names or not all(isinstance(name, str) for name in names) or len(set(names)) < len(names):
-        check.refuse("dof_names", "must be a list of one or more different names")
-    return names
+    listed = check.listed("dof_names", names, str)
+    if len(set(listed)) < len(listed):
+        check.refuse("dof_names", "must be different names")
+    return listed
 
 
 def _check_definite(check: Checks, name: str, matrix: object, *, strictly: bool) -> None:
@@ -360,7 +244,29 @@ def _check_free(check: Checks, vehicle: Vehicle) -> None:
             )
 
 
-def _check_held(check: Checks, stiffness: FloatArray) -> None:
+def _check_held(check: Checks, vehicle: Vehicle) -> None:
+    """Demand that every motion meets a stiffness, or is prescribed once by a rigid contact."""
+    motion = split(vehicle.matrices[3], np.isinf(vehicle.springs))
+    if motion is None:
+        check.refuse(
+            "contacts", "must not prescribe one motion twice, but rigid contacts of this vehicle do: leave one out"
+        )
+        return
+    stiffness = motion.free.T @ vehicle.held_stiffness @ motion.free
     diagonal = np.sqrt(np.diag(stiffness))
-    if not (diagonal > 0).all() or np.linalg.eigvalsh(stiffness / np.outer(diagonal, diagonal)).min() < 1e-12:
+    if not (diagonal > 0).all() or (
+        stiffness.size and np.linalg.eigvalsh(stiffness / np.outer(diagonal, diagonal)).min() < 1e-12
+    ):
         check.refuse("contacts", "must hold the vehicle up: some motion of it meets no stiffness at all")
+
+
+def _check_carried(check: Checks, vehicle: Vehicle) -> None:
+    """Demand that weight rests on every contact."""
+    loads = vehicle.static_loads
+    for number in np.flatnonzero(~(loads > 0)).tolist():
+        at = vehicle.contacts[number]
+        check.refuse(
+            f"contacts[{number}]",
+            f"at {at.position:g} m ahead and {at.across:g} m to the left must carry weight, got a static load of "
+            f"{loads[number]:.6g} N: the vehicle would tip over its other contacts",
+        )

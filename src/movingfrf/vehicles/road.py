@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from movingfrf._checks import Checks, checking
-from movingfrf.vehicles.base import Contact, Vehicle
+from movingfrf.vehicles.assembly import Body, Suspension, assemble
+from movingfrf.vehicles.base import Vehicle
+from movingfrf.vehicles.contact import Contact
 
 
 def quarter_car(
@@ -53,18 +53,18 @@ def quarter_car(
         check.positive("wheel_mass", wheel_mass, "kg")
         check.positive("suspension_stiffness", suspension_stiffness, "N/m")
         check.not_negative("suspension_damping", suspension_damping, "N s/m")
-        check.positive("tyre_stiffness", tyre_stiffness, "N/m")
+        check.positive_or_infinite("tyre_stiffness", tyre_stiffness, "N/m")
         check.not_negative("tyre_damping", tyre_damping, "N s/m")
         check.not_negative("footprint", footprint, "m")
-    k, c = suspension_stiffness, suspension_damping
-    return Vehicle(
-        mass=[[body_mass, 0], [0, wheel_mass]],
-        damping=[[c, -c], [-c, c]],
-        stiffness=[[k, -k], [-k, k]],
-        contact_map=[[0, 1]],
-        contacts=[Contact(position=0.0, stiffness=tyre_stiffness, damping=tyre_damping, footprint=footprint)],
-        vertical=[1, 1],
-        dof_names=["body", "wheel"],
+    return assemble(
+        bodies=[Body(mass=body_mass, name="body"), Body(mass=wheel_mass, name="wheel")],
+        suspensions=[
+            Suspension(upper="body", lower="wheel", stiffness=suspension_stiffness, damping=suspension_damping)
+        ],
+        contacts=[
+            Contact(position=0.0, stiffness=tyre_stiffness, damping=tyre_damping, footprint=footprint, name="wheel")
+        ],
+        under=["wheel"],
     )
 
 
@@ -118,36 +118,27 @@ def half_car(
         wheels = check.pair("wheel_masses", wheel_masses, "kg")
         (kf, kr) = check.pair("suspension_stiffness", suspension_stiffness, "N/m")
         (cf, cr) = check.pair("suspension_damping", suspension_damping, "N s/m", positive=False)
-        tyres = check.pair("tyre_stiffness", tyre_stiffness, "N/m")
+        tyres = check.pair("tyre_stiffness", tyre_stiffness, "N/m", infinite=True)
         tyre_dampers = check.pair("tyre_damping", tyre_damping, "N s/m", positive=False)
         check.not_negative("footprint", footprint, "m")
         front, rear = _in_order(check, "axles", axles, "have the front axle ahead of the rear one")
 
-    def suspension(at_front: float, at_rear: float) -> list[list[float]]:
-        bounce_pitch = at_front * front + at_rear * rear
-        return [
-            [at_front + at_rear, bounce_pitch, -at_front, -at_rear],
-            [bounce_pitch, at_front * front**2 + at_rear * rear**2, -at_front * front, -at_rear * rear],
-            [-at_front, -at_front * front, at_front, 0],
-            [-at_rear, -at_rear * rear, 0, at_rear],
-        ]
-
-    return Vehicle(
-        mass=[
-            [body_mass, 0, 0, 0],
-            [0, pitch_inertia, 0, 0],
-            [0, 0, wheels[0], 0],
-            [0, 0, 0, wheels[1]],
+    names = ["front_wheel", "rear_wheel"]
+    corners = list(zip(names, (front, rear), wheels, (kf, kr), (cf, cr), tyres, tyre_dampers, strict=True))
+    return assemble(
+        bodies=[
+            Body(mass=body_mass, pitch_inertia=pitch_inertia),
+            *(Body(mass=mass, position=at, name=name) for name, at, mass, *_ in corners),
         ],
-        damping=suspension(cf, cr),
-        stiffness=suspension(kf, kr),
-        contact_map=[[0, 0, 1, 0], [0, 0, 0, 1]],
+        suspensions=[
+            Suspension(upper="", lower=name, stiffness=k, damping=c, position=at)
+            for name, at, _, k, c, *_ in corners
+        ],
         contacts=[
-            Contact(position=position, stiffness=stiffness, damping=damping, footprint=footprint)
-            for position, stiffness, damping in zip((front, rear), tyres, tyre_dampers, strict=True)
+            Contact(position=at, stiffness=k, damping=c, footprint=footprint, name=name.removesuffix("_wheel"))
+            for name, at, *_, k, c in corners
         ],
-        vertical=[1, 0, 1, 1],
-        dof_names=["bounce", "pitch", "front_wheel", "rear_wheel"],
+        under=names,
     )
 
 
@@ -216,23 +207,35 @@ def full_car(
         wheels = check.pair("wheel_masses", wheel_masses, "kg")
         springs = check.pair("suspension_stiffness", suspension_stiffness, "N/m")
         dampers = check.pair("suspension_damping", suspension_damping, "N s/m", positive=False)
-        tyres = check.pair("tyre_stiffness", tyre_stiffness, "N/m")
+        tyres = check.pair("tyre_stiffness", tyre_stiffness, "N/m", infinite=True)
         tyre_dampers = check.pair("tyre_damping", tyre_damping, "N s/m", positive=False)
         along = _in_order(check, "axles", axles, "have the front axle ahead of the rear one")
         aside = _in_order(check, "sides", sides, "have the left wheels left of the right ones")
         check.not_negative("footprint", footprint, "m")
-    corners = [(axle, side) for axle in range(2) for side in range(2)]
-    stiffness, damping = np.zeros((2, 7, 7))
-    for wheel, (axle, side) in enumerate(corners):
-        stretch = np.array([1.0, along[axle], aside[side], 0.0, 0.0, 0.0, 0.0])
-        stretch[3 + wheel] = -1.0
-        stiffness += springs[axle] * np.outer(stretch, stretch)
-        damping += dampers[axle] * np.outer(stretch, stretch)
-    return Vehicle(
-        mass=np.diag([body_mass, pitch_inertia, roll_inertia, *(wheels[axle] for axle, _ in corners)]),
-        damping=damping,
-        stiffness=stiffness,
-        contact_map=np.hstack([np.zeros((4, 3)), np.eye(4)]),
+    corners = {
+        f"{end}_{hand}": (axle, side)
+        for axle, end in enumerate(("front", "rear"))
+        for side, hand in enumerate(("left", "right"))
+    }
+    return assemble(
+        bodies=[
+            Body(mass=body_mass, pitch_inertia=pitch_inertia, roll_inertia=roll_inertia),
+            *(
+                Body(mass=wheels[axle], position=along[axle], across=aside[side], name=f"{name}_wheel")
+                for name, (axle, side) in corners.items()
+            ),
+        ],
+        suspensions=[
+            Suspension(
+                upper="",
+                lower=f"{name}_wheel",
+                stiffness=springs[axle],
+                damping=dampers[axle],
+                position=along[axle],
+                across=aside[side],
+            )
+            for name, (axle, side) in corners.items()
+        ],
         contacts=[
             Contact(
                 position=along[axle],
@@ -241,16 +244,11 @@ def full_car(
                 path=side,
                 across=aside[side],
                 footprint=footprint,
+                name=name.replace("_", " "),
             )
-            for axle, side in corners
+            for name, (axle, side) in corners.items()
         ],
-        vertical=[1, 0, 0, 1, 1, 1, 1],
-        dof_names=[
-            "bounce",
-            "pitch",
-            "roll",
-            *(f"{axle}_{side}_wheel" for axle in ("front", "rear") for side in ("left", "right")),
-        ],
+        under=[f"{name}_wheel" for name in corners],
     )
 
 

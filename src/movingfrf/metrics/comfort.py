@@ -1,0 +1,433 @@
+"""What vibration does to people: frequency weightings, vibration doses, comfort reactions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._checks import ComplexArray, FloatArray, checking
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# Limits beyond which the rms alone understates a vibration (ISO 2631-1, 6.2.1 and 6.3.3).
+CREST_LIMIT, MTVV_LIMIT, VDV_LIMIT = 9.0, 1.5, 1.75
+
+# Time over which the running rms is taken [s] (ISO 2631-1, 6.3.1).
+RUNNING = 1.0
+
+# What is left of a weighting's memory at the end of the padding.
+FORGOTTEN = 1e-9
+
+# Frequency-weighted rms acceleration [m/s²] from and up to which people react so (ISO 2631-1, C.2.3); they overlap.
+REACTIONS = (
+    ("not uncomfortable", 0.0, 0.315),
+    ("a little uncomfortable", 0.315, 0.63),
+    ("fairly uncomfortable", 0.5, 1.0),
+    ("uncomfortable", 0.8, 1.6),
+    ("very uncomfortable", 1.25, 2.5),
+    ("extremely uncomfortable", 2.0, np.inf),
+)
+
+# Multiplying factors of a seated person's axes for comfort, and the weighting of each (ISO 2631-1, 8.2.2.1).
+SEATED = {
+    "seat x": ("Wd", 1.0),
+    "seat y": ("Wd", 1.0),
+    "seat z": ("Wk", 1.0),
+    "seat roll": ("We", 0.63),
+    "seat pitch": ("We", 0.4),
+    "seat yaw": ("We", 0.2),
+    "backrest x": ("Wc", 0.8),
+    "backrest y": ("Wd", 0.5),
+    "backrest z": ("Wd", 0.4),
+    "feet x": ("Wk", 0.25),
+    "feet y": ("Wk", 0.25),
+    "feet z": ("Wk", 0.4),
+}
+
+
+class Weighting(NamedTuple):
+    """A frequency weighting: frequencies [Hz] and quality factors of its four filters, and its gain."""
+
+    band: tuple[float, float]  # f1, f2 of the Butterworth limits
+    transition: tuple[float, float, float] | None = None  # f3 (inf: none), f4, Q4: from acceleration to velocity
+    step: tuple[float, float, float, float] | None = None  # f5, Q5, f6, Q6: from jerk to acceleration
+    gain: float = 1.0
+    standard: str = "ISO 2631-1"
+
+
+WEIGHTINGS = {
+    "Wk": Weighting((0.4, 100.0), (12.5, 12.5, 0.63), (2.37, 0.91, 3.35, 0.91)),
+    "Wd": Weighting((0.4, 100.0), (2.0, 2.0, 0.63)),
+    "Wf": Weighting((0.08, 0.63), (np.inf, 0.25, 0.86), (0.0625, 0.80, 0.1, 0.80)),
+    "Wc": Weighting((0.4, 100.0), (8.0, 8.0, 0.63)),
+    "We": Weighting((0.4, 100.0), (1.0, 1.0, 0.63)),
+    "Wj": Weighting((0.4, 100.0), None, (3.75, 0.91, 5.32, 0.91)),
+    # Its gain is 0.4 below the step.
+    "Wb": Weighting((0.4, 100.0), (16.0, 16.0, 0.55), (2.5, 0.90, 4.0, 0.95), 1.024, "ISO 2631-4"),
+}
+
+
+class Comfort(NamedTuple):
+    """Measures of one weighted acceleration; of a rotation in rad instead of m."""
+
+    weighting: str
+    rms: float  # [m/s²]
+    peak: float  # [m/s²]
+    mtvv: float  # greatest running rms over one second [m/s²]
+    vdv: float  # vibration dose value [m/s^1.75]
+    duration: float  # [s]
+
+    @property
+    def crest_factor(self) -> float:
+        """Peak over rms."""
+        return self.peak / self.rms if self.rms else float("nan")
+
+    @property
+    def exceeded(self) -> tuple[str, ...]:
+        """Criteria of ISO 2631-1 by which the rms alone understates the vibration: `crest`, `MTVV`, `VDV`."""
+        if not self.rms:
+            return ()
+        ratios = {
+            "crest": self.crest_factor / CREST_LIMIT,
+            "MTVV": self.mtvv / self.rms / MTVV_LIMIT,
+            "VDV": self.vdv / (self.rms * self.duration**0.25) / VDV_LIMIT,
+        }
+        return tuple(name for name, ratio in ratios.items() if ratio > 1)
+
+    @property
+    def reactions(self) -> tuple[str, ...]:
+        """Likely reactions of passengers in public transport to such an rms, which overlap."""
+        return comfort_reactions(self.rms)
+
+
+def weighting(name: str, frequency: ArrayLike) -> ComplexArray:
+    """Evaluate a frequency weighting of whole-body vibration.
+
+    A product of rational functions of p = 2πi f,
+
+        (p/ω₁)²            1             1 + p/ω₃       1 + p/(Q₅ω₅) + (p/ω₅)²  ω₅²
+        ─────── · ──────────────── · ──────────── · ──────────────────────── · ───
+         B(p,ω₁)      B(p,ω₂)         N(p,ω₄,Q₄)     1 + p/(Q₆ω₆) + (p/ω₆)²     ω₆²
+
+    with N(p, ω, Q) = 1 + p/(Qω) + (p/ω)² and B(p, ω) = N(p, ω, 1/√2): band limits, transition from acceleration to
+    velocity, upward step.
+
+    Parameters
+    ----------
+    name : str
+        `Wk` (vertical, seat and floor), `Wd` (horizontal), `Wf` (vertical, motion sickness), `Wc` (horizontal,
+        backrest), `We` (rotational), `Wj` (vertical, recumbent person's head), or `Wb` (vertical, rail vehicles).
+    frequency : array_like, shape (*s)
+        Frequency [Hz].
+
+    Returns
+    -------
+    ndarray, shape (*s), complex
+        Factor on the spectrum of an acceleration, dimensionless.
+
+    Raises
+    ------
+    ValueError
+        If there is no such weighting, or a frequency is not finite.
+
+    References
+    ----------
+    ISO 2631-1:1997, Annex A; ISO 2631-4:2001 and ISO 8041 (`Wb`).
+
+    Examples
+    --------
+    >>> abs(weighting("Wk", [1.0, 10.0, 100.0])).round(4)
+    array([0.4825, 0.9884, 0.0887])
+    """
+    _check_weighting(name)
+    with checking() as check:
+        given = np.asarray(frequency)
+        check.array("frequency", given.ravel(), "Hz", (None,))
+    chosen, p = WEIGHTINGS[name], 2j * np.pi * np.asarray(given, float)
+    low, high = chosen.band
+    factor = chosen.gain * (p / (2 * np.pi * low)) ** 2 / _second_order(p, low) / _second_order(p, high)
+    if chosen.transition:
+        first, f4, q4 = chosen.transition
+        factor = factor * (1 + p / (2 * np.pi * first)) / _second_order(p, f4, q4)
+    if chosen.step:
+        f5, q5, f6, q6 = chosen.step
+        factor = factor * _second_order(p, f5, q5) / _second_order(p, f6, q6) * (f5 / f6) ** 2
+    return factor
+
+
+def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk") -> FloatArray:
+    """Weight acceleration histories.
+
+    In the frequency domain, where a weighting is exact, behind a padding in which it forgets.
+
+    Parameters
+    ----------
+    acceleration : array_like, shape (time, *s)
+        Accelerations [m/s² or rad/s²], zero before and after.
+    time_step : float
+        Step in time [s].
+    name : str
+        Name of the weighting; see `weighting`.
+
+    Returns
+    -------
+    ndarray, shape (time, *s)
+        Weighted accelerations [m/s² or rad/s²].
+
+    Raises
+    ------
+    ValueError
+        If there is no such weighting, the step is not positive or values are not finite.
+
+    Examples
+    --------
+    >>> time = np.arange(0.0, 40.0, 1e-3)
+    >>> hum = weighted(np.sin(2 * np.pi * 10 * time), 1e-3, "Wk")
+    >>> round(float(np.sqrt(2) * hum[20_000:].std()), 4)
+    0.9884
+    """
+    import scipy.fft
+
+    _check_weighting(name)
+    with checking() as check:
+        check.positive("time_step", time_step, "s")
+        given = np.asarray(acceleration)
+        flat = given.reshape(len(given), -1) if given.ndim and given.size else given
+        values = check.array("acceleration", flat, "m/s²", (None, None))
+    # The slowest pole is that of the Butterworth high-pass: ω₁/√2.
+    memory = -np.log(FORGOTTEN) * np.sqrt(2) / (2 * np.pi * WEIGHTINGS[name].band[0])
+    padded = scipy.fft.next_fast_len(len(values) + int(np.ceil(memory / time_step)), real=True)
+    factor = weighting(name, scipy.fft.rfftfreq(padded, time_step))
+    spectra = scipy.fft.rfft(values, padded, axis=0)
+    return scipy.fft.irfft(spectra * factor[:, None], padded, axis=0)[: len(values)].reshape(given.shape)
+
+
+def running_rms(values: ArrayLike, time_step: float, window: float = RUNNING) -> FloatArray:
+    """Root mean square over the time just past; before the record there was nothing.
+
+    Parameters
+    ----------
+    values : array_like, shape (time, *s)
+        Histories, of any quantity [any unit].
+    time_step : float
+        Step in time [s].
+    window : float
+        Time over which the mean is taken [s].
+
+    Returns
+    -------
+    ndarray, shape (time, *s)
+        Running rms [unit of the histories].
+
+    Raises
+    ------
+    ValueError
+        If a time is not positive.
+
+    References
+    ----------
+    ISO 2631-1:1997, 6.3.1, equation (2).
+    """
+    with checking() as check:
+        check.positive("time_step", time_step, "s")
+        check.positive("window", window, "s")
+    squares = np.asarray(values, float) ** 2
+    energy = np.concatenate([np.zeros_like(squares[:1]), np.cumsum(squares, axis=0)])
+    steps = max(round(window / time_step), 1)
+    first = np.maximum(np.arange(1, len(energy)) - steps, 0)
+    # Differences of a sum may come out just below zero.
+    return np.sqrt(np.maximum(energy[1:] - energy[first], 0.0) / steps)
+
+
+def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
+    """Vibration dose value (∫ a⁴ dt)^¼, which weighs shocks more than an rms does.
+
+    Parameters
+    ----------
+    values : array_like, shape (time, *s)
+        Weighted accelerations [m/s² or rad/s²].
+    time_step : float
+        Step in time [s].
+
+    Returns
+    -------
+    ndarray, shape (*s)
+        Dose value [m/s^1.75 or rad/s^1.75].
+
+    Raises
+    ------
+    ValueError
+        If the step is not positive.
+
+    References
+    ----------
+    ISO 2631-1:1997, 6.3.2, equation (5).
+    """
+    with checking() as check:
+        check.positive("time_step", time_step, "s")
+    return (np.sum(np.asarray(values, float) ** 4, axis=0) * time_step) ** 0.25
+
+
+def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk") -> Comfort:
+    """Measure how a degree of freedom would feel to somebody who moves with it.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        The coupled response of a vehicle, from `simulate`, `cdfm` or `sim`.
+    dof : str
+        Name of the degree of freedom.
+    weighting : str
+        Name of the frequency weighting: `Wk` for vertical motion of a seat or floor, `We` for a rotation; see
+        `weighting`.
+
+    Returns
+    -------
+    Comfort
+        Weighted rms, peak, MTVV and VDV; as properties the crest factor, the criteria by which the rms alone
+        understates the vibration, and the likely reactions.
+
+    Raises
+    ------
+    ValueError
+        If there is no such degree of freedom or weighting.
+
+    References
+    ----------
+    ISO 2631-1:1997, Mechanical vibration and shock: evaluation of human exposure to whole-body vibration.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> car = mf.quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                      suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> road = mf.realise(mf.IsoRoad.of_class("C"), length=250.0, seed=1)
+    >>> result = mf.simulate(mf.RigidGuideway(), car, road, speed=20.0, duration=10.0)
+    >>> felt = mf.comfort(result, "body")
+    >>> felt.reactions
+    ('fairly uncomfortable', 'uncomfortable')
+    """
+    _check_weighting(weighting)
+    with checking() as check:
+        if "acceleration" not in result:
+            check.refuse("result", "must be the coupled response of a vehicle, with its accelerations")
+        elif dof not in result.dof.values:
+            check.refuse("dof", f"must be one of {', '.join(map(str, result.dof.values))}, got {dof!r}")
+    step = float(result.attrs["time_step"])
+    return felt(result.acceleration.sel(dof=dof).values, step, weighting)
+
+
+def felt(acceleration: ArrayLike, time_step: float, weighting: str = "Wk") -> Comfort:
+    """Measure one acceleration history as `comfort` does.
+
+    Parameters
+    ----------
+    acceleration : array_like, shape (time,)
+        Acceleration [m/s² or rad/s²].
+    time_step : float
+        Step in time [s].
+    weighting : str
+        Name of the frequency weighting.
+
+    Returns
+    -------
+    Comfort
+        As `comfort` returns it.
+
+    Raises
+    ------
+    ValueError
+        If there is no such weighting, the step is not positive, or there is not one finite history.
+    """
+    with checking() as check:
+        check.array("acceleration", acceleration, "m/s²", (None,))
+    values = weighted(acceleration, time_step, weighting)
+    return Comfort(
+        weighting=weighting,
+        rms=float(np.sqrt(np.mean(values**2))),
+        peak=float(np.abs(values).max()),
+        mtvv=float(running_rms(values, time_step).max()),
+        vdv=float(vibration_dose(values, time_step)),
+        duration=values.size * time_step,
+    )
+
+
+def comfort_reactions(rms: float) -> tuple[str, ...]:
+    """Name the likely reactions of passengers in public transport, which overlap.
+
+    Parameters
+    ----------
+    rms : float
+        Frequency-weighted rms acceleration, or total of several axes [m/s²].
+
+    Returns
+    -------
+    tuple of str
+        One reaction, or two neighbouring ones.
+
+    Raises
+    ------
+    ValueError
+        If the rms is negative.
+
+    References
+    ----------
+    ISO 2631-1:1997, C.2.3.
+
+    Examples
+    --------
+    >>> comfort_reactions(0.4), comfort_reactions(0.9)
+    (('a little uncomfortable',), ('fairly uncomfortable', 'uncomfortable'))
+    """
+    with checking() as check:
+        check.not_negative("rms", rms, "m/s²")
+    return tuple(name for name, least, most in REACTIONS if least <= rms < most)
+
+
+def vibration_total(rms: ArrayLike, factors: ArrayLike = 1.0) -> float:
+    """Combine the weighted rms accelerations of several axes, (Σ k² a²)^½.
+
+    Parameters
+    ----------
+    rms : array_like, shape (axis,)
+        Weighted rms acceleration of each axis [m/s² or rad/s²].
+    factors : array_like, shape (axis,)
+        The factor k of each; those of a seated person are in `SEATED`, those for health are 1.4, 1.4 and 1.
+
+    Returns
+    -------
+    float
+        Vibration total value [m/s²].
+
+    Raises
+    ------
+    ValueError
+        If an array is not a list of finite numbers, one factor for each axis.
+
+    References
+    ----------
+    ISO 2631-1:1997, 6.5, equation (10).
+
+    Examples
+    --------
+    >>> round(vibration_total([0.3, 0.2, 0.5], [1.4, 1.4, 1.0]), 3)
+    0.71
+    """
+    with checking() as check:
+        values = check.array("rms", rms, "m/s²", (None,))
+        scales = check.array("factors", np.broadcast_to(factors, values.shape), "1", (values.size,))
+    return float(np.sqrt(np.sum((scales * values) ** 2)))
+
+
+def _second_order(p: ComplexArray, frequency: float, quality: float = np.sqrt(0.5)) -> ComplexArray:
+    ratio = p / (2 * np.pi * frequency)
+    return 1 + ratio / quality + ratio**2
+
+
+def _check_weighting(name: object) -> None:
+    with checking() as check:
+        if name not in WEIGHTINGS:
+            check.refuse("weighting", f"must be one of {', '.join(WEIGHTINGS)}, got {name!r}")

@@ -1,0 +1,265 @@
+"""What a history or a spectrum does to a material: level crossings, rainflow cycles, damage."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from numbers import Real
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._checks import FloatArray, IntArray, checking, shown
+
+# Spectral methods by name → the class of FLife that carries each out.
+METHODS = {
+    "narrow_band": "Narrowband",
+    "dirlik": "Dirlik",
+    "tovo_benasciutti": "TovoBenasciutti",
+    "zhao_baker": "ZhaoBaker",
+    "single_moment": "SingleMoment",
+}
+
+
+def level_crossings(values: ArrayLike, levels: ArrayLike) -> IntArray:
+    """Count how often a history rises through each level.
+
+    Parameters
+    ----------
+    values : array_like, shape (time,)
+        The history, of any quantity [any unit]; between its samples straight.
+    levels : array_like, shape (level,)
+        The levels [unit of the history].
+
+    Returns
+    -------
+    ndarray of int, shape (level,)
+        Number of crossings from below a level to it or above it.
+
+    Raises
+    ------
+    ValueError
+        If an array is not one of finite numbers.
+
+    Examples
+    --------
+    >>> level_crossings([0.0, 2.0, 0.0, 1.0, -1.0], [0.5, 1.5])
+    array([2, 1])
+    """
+    with checking() as check:
+        history = check.array("values", values, "any unit", (None,))
+        at = check.array("levels", levels, "any unit", (None,))
+    rising = np.diff(history) > 0
+    from_below = np.searchsorted(np.sort(history[:-1][rising]), at)
+    still_below = np.searchsorted(np.sort(history[1:][rising]), at)
+    return from_below - still_below
+
+
+def rainflow(values: ArrayLike) -> FloatArray:
+    """Count the rainflow cycles of a history that repeats itself.
+
+    Four-point counting; what is left open at the end closes when the history follows itself once more, so that the
+    largest range of all is always counted.
+
+    Parameters
+    ----------
+    values : array_like, shape (time,)
+        The history, of any quantity [any unit].
+
+    Returns
+    -------
+    ndarray, shape (cycle, 2)
+        Amplitude (half of the range) and mean of each cycle [unit of the history].
+
+    Raises
+    ------
+    ValueError
+        If the history is not one of finite numbers, or the extra `fatigue` is not installed.
+
+    References
+    ----------
+    ASTM E1049, Standard practices for cycle counting in fatigue analysis. C. Amzallag et al., Standardization of
+    the rainflow counting method for fatigue analysis, International Journal of Fatigue 16 (1994) 287-293.
+
+    Examples
+    --------
+    >>> rainflow([0.0, 4.0, 1.0, 3.0, 0.0])
+    array([[1., 2.],
+           [2., 2.]])
+    """
+    fatpack = _extra("fatpack")
+    with checking() as check:
+        history = check.array("values", values, "any unit", (None,))
+    turns = _turning_points(history)
+    if len(turns) < 2:
+        return np.empty((0, 2))
+    closed, open_ = fatpack.find_rainflow_cycles(turns)
+    again = _turning_points(np.concatenate([open_, open_]))
+    ends = np.concatenate(
+        [np.reshape(pairs, (-1, 2)) for pairs in (closed, fatpack.find_rainflow_cycles(again)[0])]
+    )
+    return np.stack([np.abs(ends[:, 1] - ends[:, 0]) / 2, ends.mean(axis=1)], axis=1)
+
+
+def rainflow_damage(values: ArrayLike, *, slope: float, strength: float = 1.0) -> float:
+    """Damage of a history by the rule of Palmgren and Miner, Σ a^m / C over its rainflow cycles.
+
+    Parameters
+    ----------
+    values : array_like, shape (time,)
+        The history, of any quantity [any unit].
+    slope : float
+        Exponent m of the S-N curve N = C a^−m in the amplitude a.
+    strength : float
+        The curve's C: cycles to failure times amplitude to the power of the exponent [unit of the history^m].
+
+    Returns
+    -------
+    float
+        Damage of the whole history, dimensionless: 1 is failure. No mean-stress correction.
+
+    Raises
+    ------
+    ValueError
+        If exponent or strength is not positive, the history is not one of finite numbers, or the extra `fatigue`
+        is not installed.
+
+    Examples
+    --------
+    Ten cycles of amplitude 2:
+
+    >>> round(rainflow_damage(np.tile([0.0, 2.0, 0.0, -2.0], 10), slope=3.0), 9)
+    80.0
+    """
+    _check_curve(slope, strength)
+    return float(np.sum(rainflow(values)[:, 0] ** slope) / strength)
+
+
+def equivalent_amplitude(values: ArrayLike, *, slope: float, duration: float, rate: float = 1.0) -> float:
+    """Amplitude of the steady cycling that does the same damage as a history in the same time.
+
+    Parameters
+    ----------
+    values : array_like, shape (time,)
+        The history, of any quantity [any unit].
+    slope : float
+        Exponent m of the S-N curve.
+    duration : float
+        Duration of the history [s].
+    rate : float
+        Rate of the steady cycling [1/s].
+
+    Returns
+    -------
+    float
+        Amplitude (Σ a^m / (rate · duration))^(1/m) [unit of the history].
+
+    Raises
+    ------
+    ValueError
+        If a value is not positive, the history is not one of finite numbers, or the extra `fatigue` is not
+        installed.
+
+    Examples
+    --------
+    >>> time = np.linspace(0.0, 10.0, 1001)
+    >>> round(equivalent_amplitude(3 * np.cos(2 * np.pi * time), slope=5.0, duration=10.0), 9)
+    3.0
+    """
+    with checking() as check:
+        check.positive("duration", duration, "s")
+        check.positive("rate", rate, "1/s")
+    return float((rainflow_damage(values, slope=slope) / (rate * duration)) ** (1 / slope))
+
+
+def spectral_damage(
+    frequency: ArrayLike,
+    density: ArrayLike,
+    *,
+    slope: float,
+    strength: float = 1.0,
+    method: str = "dirlik",
+) -> float:
+    """Damage per second that a stationary Gaussian process does, from its spectral density alone.
+
+    The expected damage of its rainflow cycles. For a narrow band ν₀ (√2 σ)^m Γ(1 + m/2)/C, with the rate of
+    upward zero crossings ν₀ and the standard deviation σ; for a wide band that is too much, and the other methods
+    approximate the distribution of rainflow amplitudes from spectral moments.
+
+    Parameters
+    ----------
+    frequency : array_like, shape (frequency,)
+        Frequency [Hz], increasing.
+    density : array_like, shape (frequency,)
+        One-sided spectral density [unit² per Hz].
+    slope : float
+        Exponent m of the S-N curve N = C a^−m in the amplitude a.
+    strength : float
+        The curve's C: cycles to failure times amplitude to the power of the exponent [unit^m].
+    method : str
+        `dirlik`, `tovo_benasciutti`, `zhao_baker`, `single_moment` or `narrow_band`.
+
+    Returns
+    -------
+    float
+        Damage per second [1/s].
+
+    Raises
+    ------
+    ValueError
+        If shapes disagree, frequencies do not increase, a density is negative, there is no such method, or the
+        extra `fatigue` is not installed.
+
+    References
+    ----------
+    T. Dirlik, Application of computers in fatigue analysis, PhD thesis, University of Warwick, 1985.
+    D. Benasciutti, R. Tovo, Spectral methods for lifetime prediction under wide-band stationary random processes,
+    International Journal of Fatigue 27 (2005) 867-877. A. Zorman, J. Slavič, M. Boltežar, Vibration fatigue by
+    spectral methods, Mechanical Systems and Signal Processing 190 (2023) 110149.
+
+    Examples
+    --------
+    >>> f = np.linspace(9.9, 10.1, 201)
+    >>> round(spectral_damage(f, np.full(201, 5.0), slope=4.0), 1)  # σ² = 1: 10 · 4 · Γ(3)
+    80.0
+    """
+    _check_curve(slope, strength)
+    with checking() as check:
+        f = check.array("frequency", frequency, "Hz", (None,))
+        given = check.array("density", density, "unit²/Hz", (f.size,))
+        if method not in METHODS:
+            check.refuse("method", f"must be one of {', '.join(METHODS)}, got {method!r}")
+        if not check.faults and (f.size < 2 or f[0] < 0 or (np.diff(f) <= 0).any()):
+            check.refuse("frequency", "must be at least two numbers, not negative and increasing [Hz]")
+        if (given < 0).any():
+            check.refuse("density", f"must not be negative, got {given.min():g}")
+    flife = _extra("FLife")
+    variance = float(np.trapezoid(given, f))
+    if not variance:
+        return 0.0
+    # Of unit variance, so that no power of a force in newtons leaves the range of numbers.
+    process = flife.SpectralData(input={"PSD": given / variance, "f": f})
+    life = getattr(flife, METHODS[method])(process).get_life(C=1.0, k=slope)
+    return float(variance ** (slope / 2) / life / strength)
+
+
+def _turning_points(history: FloatArray) -> FloatArray:
+    """Return the ends of a history and the points between them where it turns."""
+    moved = history[np.concatenate([[True], np.diff(history) != 0])]
+    rises = np.diff(moved) > 0
+    return moved[np.concatenate([[True], rises[1:] != rises[:-1], [True]])] if moved.size > 1 else moved
+
+
+def _check_curve(slope: float, strength: float) -> None:
+    with checking() as check:
+        check.positive("slope", slope, "1")
+        # A power of a force leaves the magnitudes of physical quantities.
+        if not (isinstance(strength, Real) and 0 < strength < float("inf")):
+            check.refuse("strength", f"must be positive, got {shown(strength)} unit^m")
+
+
+def _extra(module: str) -> ModuleType:
+    try:
+        return import_module(module)
+    except ModuleNotFoundError:
+        raise ValueError(f"this measure needs {module}: pip install 'movingfrf[fatigue]'") from None

@@ -1,0 +1,275 @@
+"""What a guideway answers to a force: receptance, mobility, accelerance, and how they decay along it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._checks import ComplexArray, FloatArray, NumberArray, checking
+from movingfrf.guideways.base import Guideway, require_guideway
+from movingfrf.guideways.track import Track
+from movingfrf.guideways.waves import in_moving_frame, wavenumbers
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# Points of a decay-rate measurement in sleeper spacings, and the spacing without sleepers [m] (EN 15461).
+BAYS = np.array(
+    [*np.arange(0, 2.75, 0.25), 3, 3.5, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24, 30, 36, 42, 48, 54, 66], float
+)
+SPACING = 0.6
+
+# Decibels of a ratio of amplitudes of e.
+NEPER = 20 / np.log(10)
+
+# Form → power of iω on the receptance, unit.
+FORMS = {"receptance": (0, "m/N"), "mobility": (1, "m/s/N"), "accelerance": (2, "m/s2/N")}
+
+
+def receptance(
+    guideway: Guideway, frequency: ArrayLike, *, ahead: ArrayLike = 0.0, speed: float = 0.0
+) -> xr.Dataset:
+    """Deflection of a guideway per unit force, as a labelled result; see `mobility`.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    frequency : array_like, shape (frequency,)
+        Frequency in the frame that travels along [Hz], not negative.
+    ahead : array_like, shape (point,)
+        Receiver minus source [m]; zero is the point receptance.
+    speed : float
+        Common speed of source and receiver [m/s].
+
+    Returns
+    -------
+    xarray.Dataset
+        `receptance` (frequency, ahead) [m/N], complex.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not finite, or a frequency is negative.
+    SolveError
+        If the response is infinite.
+    """
+    return _response(guideway, frequency, ahead, speed, "receptance")
+
+
+def mobility(guideway: Guideway, frequency: ArrayLike, *, ahead: ArrayLike = 0.0, speed: float = 0.0) -> xr.Dataset:
+    """Velocity of a guideway per unit force, Y = iω G, as a labelled result.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    frequency : array_like, shape (frequency,)
+        Frequency in the frame that travels along [Hz], not negative.
+    ahead : array_like, shape (point,)
+        Receiver minus source [m]; zero is the point mobility.
+    speed : float
+        Common speed of source and receiver [m/s].
+
+    Returns
+    -------
+    xarray.Dataset
+        `mobility` (frequency, ahead) [m/s/N], complex, with coordinates `frequency` [Hz], `omega` [rad/s] and
+        `ahead` [m].
+
+    Raises
+    ------
+    ValueError
+        If an argument is not finite, or a frequency is negative.
+    SolveError
+        If the response is infinite.
+
+    Examples
+    --------
+    A UIC60 rail on pads of 300 MN/m², as published:
+
+    >>> import movingfrf as mf
+    >>> rail = mf.track(mf.EulerBernoulliBeam(bending_stiffness=210e9 * 3038.3e-8, mass=60.2),
+    ...                 mf.Spring(stiffness=300e6, damping=30e3))
+    >>> point = mf.mobility(rail, [20.0, 356.0])
+    >>> abs(point.mobility.values[:, 0])
+    array([3.88704301e-07, 2.12205628e-05])
+    """
+    return _response(guideway, frequency, ahead, speed, "mobility")
+
+
+def accelerance(
+    guideway: Guideway, frequency: ArrayLike, *, ahead: ArrayLike = 0.0, speed: float = 0.0
+) -> xr.Dataset:
+    """Acceleration of a guideway per unit force, −ω² G, as a labelled result; see `mobility`.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    frequency : array_like, shape (frequency,)
+        Frequency in the frame that travels along [Hz], not negative.
+    ahead : array_like, shape (point,)
+        Receiver minus source [m]; zero is the point accelerance.
+    speed : float
+        Common speed of source and receiver [m/s].
+
+    Returns
+    -------
+    xarray.Dataset
+        `accelerance` (frequency, ahead) [m/s²/N], complex.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not finite, or a frequency is negative.
+    SolveError
+        If the response is infinite.
+    """
+    return _response(guideway, frequency, ahead, speed, "accelerance")
+
+
+def decay_rate(response: ArrayLike, distance: ArrayLike) -> FloatArray:
+    """Track decay rate from responses measured along a track, 4.343 / Σ |A(x_n)/A(x_0)|² Δx_n.
+
+    Δx_n is what a point stands for: from midpoint to midpoint, at the source half of the first interval, at the far
+    end the whole last one. 4.343 is 10/ln 10: of a wave e^(−βx) the rate is 8.686 β.
+
+    Parameters
+    ----------
+    response : array_like, shape (*s, distance)
+        Mobility or accelerance of each point, complex or its magnitude [any unit]; or a band's rms of it.
+    distance : array_like, shape (distance,)
+        Distance of each point from the source [m], from 0 on, increasing.
+
+    Returns
+    -------
+    ndarray, shape (*s)
+        Decay rate [dB/m].
+
+    Raises
+    ------
+    ValueError
+        If distances do not increase from 0, shapes disagree, or there is no response at the source.
+
+    References
+    ----------
+    EN 15461:2008+A1:2010, Railway applications - Noise emission - Characterisation of the dynamic properties of
+    track sections for pass by noise measurements, formula (1) and Annex A.
+
+    Examples
+    --------
+    >>> x = np.linspace(0.0, 40.0, 4001)
+    >>> round(float(decay_rate(np.exp(-0.5 * x), x)), 2)
+    4.34
+    """
+    with checking() as check:
+        at = check.array("distance", distance, "m", (None,))
+        size = np.abs(np.asarray(response))
+        if not check.faults and (at.size < 2 or at[0] != 0 or (np.diff(at) <= 0).any()):
+            check.refuse("distance", "must increase from 0 and be two or more [m]")
+        if size.shape[-1:] != at.shape:
+            check.refuse("response", f"must have {at.size} points in its last axis, got shape {size.shape}")
+        elif not np.isfinite(size).all() or not size[..., 0].all():
+            check.refuse("response", "must be finite, and not zero at the source")
+    steps = np.diff(at)
+    stands_for = np.concatenate([[steps[0] / 2], (steps[1:] + steps[:-1]) / 2, steps[-1:]])
+    return NEPER / 2 / np.sum((size / size[..., :1]) ** 2 * stands_for, axis=-1)
+
+
+def track_decay_rate(guideway: Guideway, frequency: ArrayLike, *, spacing: float = SPACING) -> FloatArray:
+    """Decay rate of a guideway at rest, from its mobilities at the 29 points of EN 15461.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The track.
+    frequency : array_like, shape (frequency,)
+        Frequency [Hz], positive.
+    spacing : float
+        Sleeper spacing by which the points are laid out [m].
+
+    Returns
+    -------
+    ndarray, shape (frequency,)
+        Decay rate [dB/m]. It cannot come out below 10/ln 10 over the farthest distance, 0.11 dB/m.
+
+    Raises
+    ------
+    ValueError
+        If a frequency or the spacing is not positive, or the guideway does not give way.
+
+    References
+    ----------
+    EN 15461:2008+A1:2010, 6.7 and formula (1).
+    """
+    with checking() as check:
+        check.positive("spacing", spacing, "m")
+        if not (check.array("frequency", frequency, "Hz", (None,)) > 0).all():
+            check.refuse("frequency", "must be positive [Hz]")
+    distance = spacing * BAYS
+    return decay_rate(mobility(guideway, frequency, ahead=distance).mobility.values, distance)
+
+
+def wave_decay_rate(track: Track, frequency: ArrayLike) -> FloatArray:
+    """Decay of the wave of a track at rest that travels farthest, 8.686 min |Im κ|.
+
+    What `track_decay_rate` comes near to where that wave alone reaches beyond the first points; the near field at
+    the source keeps the two apart.
+
+    Parameters
+    ----------
+    track : Track
+        The track, made by `track`.
+    frequency : array_like, shape (frequency,)
+        Frequency [Hz].
+
+    Returns
+    -------
+    ndarray, shape (frequency,)
+        Decay rate [dB/m].
+
+    Raises
+    ------
+    ValueError
+        If it is no track, or a frequency is not finite.
+
+    References
+    ----------
+    D. Thompson, Railway Noise and Vibration, Elsevier, 2009, chapter 3.
+    """
+    with checking() as check:
+        f = check.array("frequency", frequency, "Hz", (None,))
+        if not isinstance(track, Track):
+            check.refuse("track", f"must be a track, whose waves are known, got a {type(track).__name__}")
+    omega: ComplexArray = (2 * np.pi * f).astype(complex)
+    kappa = wavenumbers(in_moving_frame(track.stiffness().above, 0.0, omega))
+    return NEPER * np.abs(kappa.imag).min(axis=0)
+
+
+def _response(guideway: Guideway, frequency: ArrayLike, ahead: ArrayLike, speed: float, form: str) -> xr.Dataset:
+    import xarray as xr
+
+    require_guideway(guideway)
+    with checking() as check:
+        f = check.array("frequency", frequency, "Hz", (None,))
+        if (f < 0).any():
+            check.refuse("frequency", f"must not be negative, got {f.min():g} Hz")
+        at = check.array("ahead", np.atleast_1d(np.asarray(ahead)), "m", (None,))
+        check.finite("speed", speed, "m/s")
+    power, units = FORMS[form]
+    omega = 2 * np.pi * f
+    values: NumberArray = (1j * omega[:, None]) ** power * guideway.moving_frf(at, speed, omega)
+    names = ("frequency", "ahead")
+    attributes = {"units": units, "long_name": f"{form} of the guideway, down per unit force down"}
+    return xr.Dataset(
+        {form: (names, values, attributes)},
+        {
+            "frequency": ("frequency", f, {"units": "Hz", "long_name": "frequency in the moving frame"}),
+            "omega": ("frequency", omega, {"units": "rad/s", "long_name": "angular frequency in the moving frame"}),
+            "ahead": ("ahead", at, {"units": "m", "long_name": "receiver minus source, ahead positive"}),
+        },
+        {"form": form, "speed": float(speed), "guideway": repr(guideway)},
+    )

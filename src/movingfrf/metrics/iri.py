@@ -1,0 +1,251 @@
+"""Roughness indices of a profile: what a reference quarter car makes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._checks import ComplexArray, FloatArray, checking
+from movingfrf.roughness.profiles import Profile
+
+# Speed at which both indices are defined [m/s].
+SPEED = 80 / 3.6
+
+# Length over which a tyre and the standards average a profile [m].
+AVERAGE = 0.25
+
+# Length of the profile whose slope the car has at its start: half a second at 80 km/h [m].
+RUN_IN = 11.0
+
+# The standards' longest step between stations [m], and the rounding of a file's.
+LONGEST_STEP = 0.3 * (1 + 1e-6)
+
+# How far a station may lie from an even grid, as a share of the step: the rounding of a file's stations.
+UNEVEN = 0.02
+
+
+class ReferenceCar(NamedTuple):
+    """A quarter car per unit of sprung mass, on a tyre that is a spring."""
+
+    tyre: float  # K1, stiffness over sprung mass [1/s²]
+    suspension: float  # K2, stiffness over sprung mass [1/s²]
+    damping: float  # C, suspension damping over sprung mass [1/s]
+    unsprung: float  # μ, unsprung over sprung mass
+
+    def matrices(self) -> tuple[FloatArray, FloatArray]:
+        """State matrix of (z_s, ż_s, z_u, ż_u) and what the elevation under the tyre adds to it."""
+        k1, k2, c, mu = self
+        return np.array(
+            [
+                [0.0, 1.0, 0.0, 0.0],
+                [-k2, -c, k2, c],
+                [0.0, 0.0, 0.0, 1.0],
+                [k2 / mu, c / mu, -(k1 + k2) / mu, -c / mu],
+            ]
+        ), np.array([0.0, 0.0, 0.0, k1 / mu])
+
+
+GOLDEN_CAR = ReferenceCar(tyre=653.0, suspension=63.3, damping=6.0, unsprung=0.15)
+RIDE_NUMBER_CAR = ReferenceCar(tyre=5120.0, suspension=390.0, damping=17.0, unsprung=0.036)
+
+
+def iri(profile: Profile, *, segment: float | None = None, average: float = AVERAGE) -> FloatArray:
+    """Compute the international roughness index of a profile.
+
+    The mean rectified speed of the suspension of the golden car, over its speed of 80 km/h, at the n stations:
+
+        IRI = 1/n Σ |ż_s − ż_u| / V
+
+    Between stations the profile is straight, and the car follows it exactly (matrix exponential). Before that the
+    profile is averaged over 250 mm by weights on its slopes, whole ones inside and fractional ones at both ends. A
+    slope between two stations is itself an average over a step, so the weights are those that together with it have
+    the second moment of a window of exactly 250 mm: the index does not depend on the step. Steps of 250 mm and more
+    are averaged no further. The car starts where the first whole window lies, at the mean slope of the first 11 m.
+
+    Parameters
+    ----------
+    profile : Profile
+        The road, at even steps of at most 0.3 m for a meaningful index, at least 11 m long.
+    segment : float, optional
+        Length of the segments that are measured one by one [m], from the first station on; what is left at the end
+        is left out. None measures the whole profile as one.
+    average : float
+        Length of the moving average [m]; 0 leaves it out.
+
+    Returns
+    -------
+    ndarray, shape (segment, path)
+        Index [mm/m], which is the same as m/km.
+
+    Raises
+    ------
+    ValueError
+        If stations are uneven, or the profile is shorter than 11 m or than one segment.
+
+    References
+    ----------
+    ASTM E1926, Standard practice for computing international roughness index of roads from longitudinal profile
+    measurements. M. W. Sayers, On the calculation of international roughness index from longitudinal road profile,
+    Transportation Research Record 1501 (1995) 1-12.
+
+    Examples
+    --------
+    Slopes of one part in a thousand, 10 m from crest to crest, where the golden car's gain is 1.26; the mean of a
+    rectified sine is 2/π of its amplitude.
+
+    >>> x = np.arange(0.0, 1000.0, 0.05)
+    >>> wave = Profile(x, 1e-3 * 10 / (2 * np.pi) * np.sin(2 * np.pi * x / 10))
+    >>> (np.pi / 2 * iri(wave, segment=500.0)[-1]).round(2)
+    array([1.26])
+    """
+    return 1e3 * _segments(profile, GOLDEN_CAR, segment, average, np.abs)
+
+
+def ride_number(profile: Profile, *, segment: float | None = None, average: float = AVERAGE) -> FloatArray:
+    """Compute the ride number of a profile: how passengers rate the ride, from 0 (impassable) to 5 (perfect).
+
+    From the root mean square PI of (ż_s − ż_u)/V, of a quarter car at 80 km/h that is much stiffer than the golden
+    one and so feels shorter waves, with averaging and start as for the `iri`:
+
+        RN = 5 exp(−160 PI),   PI² = (PI_left² + PI_right²)/2
+
+    Parameters
+    ----------
+    profile : Profile
+        The road, at even steps, at least 11 m long. Of several paths the mean square is taken.
+    segment : float, optional
+        Length of the segments that are measured one by one [m]; None measures the whole profile as one.
+    average : float
+        Length of the moving average [m]; 0 leaves it out.
+
+    Returns
+    -------
+    ndarray, shape (segment,)
+        Ride number, dimensionless.
+
+    Raises
+    ------
+    ValueError
+        As for `iri`.
+
+    References
+    ----------
+    ASTM E1489, Standard practice for computing ride number of roads from longitudinal profile measurements.
+    M. W. Sayers, S. M. Karamihas, Estimation of rideability by analyzing longitudinal road profile, Transportation
+    Research Record 1536 (1996) 110-116.
+
+    Examples
+    --------
+    >>> x = np.arange(0.0, 1000.0, 0.05)
+    >>> wave = Profile(x, 1e-3 * 5 / (2 * np.pi) * np.sin(2 * np.pi * x / 5))
+    >>> ride_number(wave).round(2)
+    array([4.32])
+    """
+    square = _segments(profile, RIDE_NUMBER_CAR, segment, average, np.square)
+    return 5 * np.exp(-160 * np.sqrt(square.mean(axis=1)))
+
+
+def _segments(
+    profile: Profile,
+    car: ReferenceCar,
+    segment: float | None,
+    average: float,
+    measure: Callable[[FloatArray], FloatArray],
+) -> FloatArray:
+    """Mean of a measure of the suspension's slope (ż_s − ż_u)/V over each segment, shape (segment, path)."""
+    step, length = _even_step(profile.stations), float(np.ptp(profile.stations))
+    with checking() as check:
+        average = check.not_negative("average", average, "m")
+        weights = _weights(average / step) if step and average >= 0 else np.ones(1)
+        if not step:
+            check.refuse("profile", "must have stations at even steps [m]; resample it first")
+        elif step > LONGEST_STEP:
+            check.refuse("profile", f"must have a step of at most {LONGEST_STEP:g} m, got {step:g} m")
+        if length < RUN_IN:
+            check.refuse("profile", f"must be at least {RUN_IN:g} m long, got {length:g} m")
+        if segment is not None:
+            shortest = (weights.size + 1) * step
+            if not shortest <= check.positive("segment", segment, "m") <= length * (1 + 1e-9):
+                check.refuse(
+                    "segment",
+                    f"must be at least {shortest:g} m and at most the profile's {length:g} m, got {segment!r} m",
+                )
+    span = length if segment is None else segment
+    # Where each segment begins and ends, in steps; a rounding must not lose the last one.
+    bounds = np.floor(np.arange(int(length / span + 1e-6) + 1) * span / step + 1e-6).astype(int)
+    # The first and the last steps are not surrounded by a whole window.
+    half = weights.size // 2
+    bounds = np.clip(bounds - half, 0, len(profile.stations) - weights.size)
+    elevation = np.asarray(profile.elevation)
+    found = []
+    for column in [elevation] if elevation.ndim == 1 else elevation.T:
+        slopes = np.convolve(np.diff(column) / step, weights, mode="valid")
+        start = (np.interp(RUN_IN, step * np.arange(len(column)), column) - column[0]) / RUN_IN
+        taken = measure(suspension_slope(slopes, step, car, float(start)))
+        found.append(np.add.reduceat(taken[: bounds[-1]], bounds[:-1]) / np.diff(bounds))
+    return np.stack(found, axis=1)
+
+
+def suspension_slope(slopes: FloatArray, step: float, car: ReferenceCar, start: float) -> FloatArray:
+    """Slope (ż_s − ż_u)/V of the suspension at the end of each step of a road of straight pieces.
+
+    Parameters
+    ----------
+    slopes : ndarray, shape (step,)
+        Slope of each piece [m/m].
+    step : float
+        Length of a piece [m].
+    car : ReferenceCar
+        The car; travels at 80 km/h.
+    start : float
+        Slope along which it comes [m/m].
+
+    Returns
+    -------
+    ndarray, shape (step,)
+        Slope [m/m].
+    """
+    from scipy.signal import lfilter
+
+    # The slope drives the car's slopes as the elevation drives its heights. One recursion of first order per mode
+    # is exact, and unlike one of fourth order keeps its digits at steps of millimetres.
+    poles, shapes, into = _modes(car)
+    kept = np.exp(poles * step / SPEED)
+    found = np.zeros(len(slopes))
+    for pole, keep, shape, given in zip(poles, kept, shapes, into, strict=True):
+        gain = shape * given / pole
+        # About the steady state −gain, in which the car comes along the slope.
+        (driven, _) = lfilter([gain * (keep - 1)], [1.0, -keep], slopes, zi=[-keep * gain * start])
+        found += 2 * driven.real
+    return found
+
+
+def _modes(car: ReferenceCar) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Upper poles [rad/s], how much of each mode the suspension's stroke shows, and what the road feeds into it."""
+    state, road = car.matrices()
+    poles, vectors = np.linalg.eig(state)
+    into = np.linalg.solve(vectors, road)
+    upper = poles.imag > 0
+    return poles[upper], (vectors[0] - vectors[2])[upper], into[upper]
+
+
+def _weights(window: float) -> FloatArray:
+    """Weights that average slopes over a window of so many steps; each slope is an average over one already."""
+    if window <= 1:
+        return np.ones(1)
+    inside, missing = int(np.ceil((window - 1) / 2 - 1e-6)) - 1, (window**2 - 1) / 12
+    # The end weight with which the second moment of the weights, in steps squared, is what a window of that length
+    # has beyond a window of one step.
+    whole = np.arange(-inside, inside + 1)
+    fraction = (whole.size * missing - float((whole**2).sum())) / (2 * ((inside + 1) ** 2 - missing))
+    weights = np.array([fraction, *np.ones(whole.size), fraction])
+    return weights / weights.sum()
+
+
+def _even_step(stations: FloatArray) -> float:
+    """Step of even stations [m]; 0 for uneven ones."""
+    step = float(np.ptp(stations)) / (len(stations) - 1)
+    apart = np.abs(stations - stations[0] - step * np.arange(len(stations))).max()
+    return step if apart <= UNEVEN * step else 0.0

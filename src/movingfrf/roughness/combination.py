@@ -1,0 +1,164 @@
+"""Profiles made of profiles: added up, set side by side, and rolled over by a wheel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from movingfrf._checks import FloatArray, checking
+from movingfrf.roughness.profiles import Profile
+
+# Stations nearer to each other than this share of the smallest step count as one.
+SAME_STATION = 1e-6
+
+
+def superposed(*profiles: Profile) -> Profile:
+    """Add profiles up: a bump on a rough road, say, or a flat wheel on a rough rail.
+
+    The sum has the stations of all of them, so that it is the sum of their splines also between stations.
+
+    Parameters
+    ----------
+    *profiles : Profile
+        Profiles to add. One without columns counts for all paths.
+
+    Returns
+    -------
+    Profile
+        Their sum over the interval that they share.
+
+    Raises
+    ------
+    ValueError
+        If there are none, they share no interval, or have different numbers of paths.
+
+    Examples
+    --------
+    >>> from movingfrf.roughness.irregularities import bump, harmonic
+    >>> both = superposed(harmonic(amplitude=0.001, wavelength=4.0, length=20.0),
+    ...                   bump(height=0.02, width=1.0, at=4.5, length=20.0))
+    >>> round(float(both.along(0)(5.0)), 6)
+    0.021
+    """
+    with checking() as check:
+        if not profiles:
+            check.refuse("profiles", "must be at least one")
+        counts = sorted({profile.paths for profile in profiles if not profile.same_across})
+        if len(counts) > 1:
+            check.refuse("profiles", f"must have the same number of paths, got {' and '.join(map(str, counts))}")
+    stations = _shared_stations(profiles)
+    across = [profile.across for profile in profiles if profile.across is not None]
+    if not counts:
+        elevation = sum(profile.along(0)(stations) for profile in profiles)
+    else:
+        elevation = np.stack(
+            [sum(profile.along(path)(stations) for profile in profiles) for path in range(counts[0])], axis=1
+        )
+    return Profile(stations, elevation, source=_sources(profiles), across=across[0] if across else None)
+
+
+def side_by_side(*profiles: Profile) -> Profile:
+    """Set profiles side by side, each a path of its own (or several): one for each wheel, say.
+
+    Parameters
+    ----------
+    *profiles : Profile
+        Profiles whose paths become the columns, in this order.
+
+    Returns
+    -------
+    Profile
+        All their paths over the interval that they share.
+
+    Raises
+    ------
+    ValueError
+        If there are none, or they share no interval.
+
+    Examples
+    --------
+    >>> from movingfrf.roughness.irregularities import wheel_flat
+    >>> level = Profile([0.0, 4.0, 8.0, 12.0], [0.0, 0.0, 0.0, 0.0])
+    >>> side_by_side(wheel_flat(radius=0.46, chord=0.05, length=12.0), level).paths
+    2
+    """
+    with checking() as check:
+        if not profiles:
+            check.refuse("profiles", "must be at least one")
+    stations = _shared_stations(profiles)
+    columns = [profile.along(path)(stations) for profile in profiles for path in range(profile.paths)]
+    return Profile(stations, np.stack(columns, axis=1), source=_sources(profiles))
+
+
+def rolled(profile: Profile, *, radius: float) -> Profile:
+    """Path of the centre of a rigid wheel that rolls over a profile, from its height on a level road.
+
+    A round wheel bridges what is narrower than itself: it rises ahead of a step, and never reaches the bottom of a
+    narrow hole. Each point of the path is the highest that any point of the profile under the wheel lifts it to,
+    max over |s| < R of z(x + s) + √(R² − s²) − R. The wheel touches at stations only, which lowers it by up to
+    step²/(8R).
+
+    Parameters
+    ----------
+    profile : Profile
+        The road or rail, its stations evenly spaced.
+    radius : float
+        Radius R of the wheel [m].
+
+    Returns
+    -------
+    Profile
+        Elevation of the wheel, on the same stations. Within a radius of either end, it does not know what it
+        misses.
+
+    Raises
+    ------
+    ValueError
+        If the radius is not positive or the stations are not evenly spaced.
+
+    Examples
+    --------
+    >>> step = Profile(np.arange(200) * 0.01, np.where(np.arange(200) < 100, 0.0, 0.01))
+    >>> seen = rolled(step, radius=0.5).along(0)  # over a step of 10 mm, 99.5 mm ahead
+    >>> seen([0.89, 0.95, 1.0]).round(4).tolist()
+    [0.0, 0.0075, 0.01]
+    """
+    with checking() as check:
+        check.positive("radius", radius, "m")
+    step = profile.require_even("rolling a wheel over it")
+    elevation = profile.columns
+    highest = elevation.copy()
+    # Farther out the wheel is higher above its lowest point than anything on the profile.
+    relief = min(float(np.ptp(elevation, axis=0).max()), radius)
+    for k in range(1, int(np.sqrt(relief * (2 * radius - relief)) / step) + 1):
+        if k >= len(elevation) or k * step >= radius:
+            break
+        clearance = radius - np.sqrt(radius**2 - (k * step) ** 2)
+        np.maximum(highest[k:], elevation[:-k] - clearance, out=highest[k:])
+        np.maximum(highest[:-k], elevation[k:] - clearance, out=highest[:-k])
+    return Profile(
+        profile.stations,
+        highest[:, 0] if profile.same_across else highest,
+        source=profile.source,
+        steps=(*profile.steps, f"rolled over by a wheel of {radius:g} m radius"),
+        across=profile.across,
+    )
+
+
+def _shared_stations(profiles: Sequence[Profile]) -> FloatArray:
+    """Stations of all profiles within the interval that they share."""
+    first = max(profile.stations[0] for profile in profiles)
+    last = min(profile.stations[-1] for profile in profiles)
+    if first >= last:
+        reaches = "; ".join(f"{p.stations[0]:g} m to {p.stations[-1]:g} m" for p in profiles)
+        raise ValueError(f"the profiles must share an interval, but they reach from {reaches}")
+    same = SAME_STATION * min(np.diff(profile.stations).min() for profile in profiles)
+    stations = np.unique(np.concatenate([profile.stations for profile in profiles]))
+    stations = stations[(stations > first + same) & (stations < last - same)]
+    apart = np.diff(stations, prepend=-np.inf) > same
+    return np.array([first, *stations[apart], last])
+
+
+def _sources(profiles: Sequence[Profile]) -> str:
+    return "; ".join(profile.source for profile in profiles if profile.source)

@@ -1,0 +1,338 @@
+"""Profiles from files and into files, whatever their format."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._checks import FloatArray, ParameterError, checking, shown
+from movingfrf.roughness.formats import columns as text
+from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf
+from movingfrf.roughness.formats.base import Column, Format, Record
+from movingfrf.roughness.profiles import Profile
+
+# All formats; text in columns last, since any text might be that.
+FORMATS = {
+    form.name: form for form in (crg.FORMAT, erd.FORMAT, matlab.FORMAT, netcdf.FORMAT, gpx.FORMAT, text.FORMAT)
+}
+
+# Enough of a file to recognise it.
+HEAD = 4096
+
+# How far a path may lie outside a grid by the rounding of two decimal numbers [m].
+ROUNDING = 1e-9
+
+
+class ReadProfile(NamedTuple):
+    """A profile and a sentence about how the file was understood."""
+
+    profile: Profile
+    understood: str
+
+
+def read_profile(
+    file: str | Path,
+    *,
+    format: str | None = None,
+    columns: Sequence[Column] | None = None,
+    across: Sequence[float] | None = None,
+    crop_rims: bool = False,
+    repair_gaps: float | None = None,
+) -> ReadProfile:
+    r"""Read a profile from a file: OpenCRG, ERD, MATLAB, netCDF, GPX, or text in columns.
+
+    What the file holds is converted to metres; nothing is subtracted, smoothed or filled in unless an option asks
+    for it, and then the profile's `steps` say so.
+
+    Parameters
+    ----------
+    file : str or Path
+        The file.
+    format : str, optional
+        `crg`, `erd`, `mat`, `netcdf`, `gpx` or `csv`; found from the file's first bytes, or else its ending.
+    columns : sequence of str or int, optional
+        The columns, channels or arrays to take: the station, then elevations. Names, or numbers counted from 0. Of
+        an ERD file, which has no stations, elevations only.
+    across : sequence of float, optional
+        Lateral positions of the paths to take from a grid [m], left positive; interpolated between its long
+        sections. All of these are paths by default, from left to right.
+    crop_rims : bool
+        Whether to leave out what a grid has no elevation for: long sections at either side (unless `across` chooses
+        them), then stations at either end.
+    repair_gaps : float, optional
+        The longest gap that may be filled by a straight line [m], from the last elevation before to the first
+        after. Without it a missing elevation is an error.
+
+    Returns
+    -------
+    ReadProfile
+        The profile, and what was understood.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, is not what it seems, lacks elevations, or an option does not suit it; with the
+        place in the file where there is one.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "road.csv"
+    >>> _ = path.write_text("Station [m];Left [mm]\n0,0;1,5\n0,1;2,5\n0,2;2,0\n0,3;1,0\n")
+    >>> profile, understood = read_profile(path)
+    >>> profile.elevation.tolist()
+    [0.0015, 0.0025, 0.002, 0.001]
+    """
+    path = Path(file)
+    with checking() as check:
+        if repair_gaps is not None:
+            check.positive("repair_gaps", repair_gaps, "m")
+        wanted = None if across is None else check.array("across", across, "m", (None,))
+        if wanted is not None and not check.faults and not wanted.size:
+            check.refuse("across", "must name at least one lateral position [m]")
+        if columns is not None and not (
+            isinstance(columns, (list, tuple)) and all(type(column) in (str, int) for column in columns)
+        ):
+            check.refuse("columns", f"must be a list of names or numbers of columns, got {shown(columns)}")
+        if not isinstance(crop_rims, bool):
+            check.refuse("crop_rims", f"must be true or false, got {shown(crop_rims)}")
+        if format is not None and format not in list(FORMATS):
+            check.refuse("format", f"must be one of {', '.join(FORMATS)}, got {shown(format)}")
+    try:
+        form = _recognised(path, format)
+        record = form.read(path, columns)
+        if wanted is not None:
+            record = _on_paths(record, wanted)
+        if crop_rims:
+            record = _cropped_rims(record, sides=wanted is None and record.across is not None)
+        record = _completed(record, repair_gaps)
+        profile = Profile(
+            record.stations,
+            record.elevations[:, 0] if record.same_across else record.elevations,
+            source=f"{path.name} ({record.source})" if record.source else path.name,
+            steps=record.steps,
+            across=None if record.across is None else tuple(record.across.tolist()),
+        )
+    except ParameterError as error:
+        raise ValueError(f"{path}: {error}") from None
+    except OSError as error:
+        raise ValueError(f"cannot read {path}: {error.strerror or error}") from None
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    return ReadProfile(profile, _sentence(path.name, profile, record))
+
+
+def write_profile(
+    profile: Profile,
+    file: str | Path,
+    *,
+    format: str | None = None,
+    encoding: str | None = None,
+) -> None:
+    """Write a profile into a file.
+
+    Parameters
+    ----------
+    profile : Profile
+        The road.
+    file : str or Path
+        The file; replaced if it exists.
+    format : str, optional
+        `csv`, `erd`, `mat`, `netcdf` or `crg`; found from the file's ending.
+    encoding : str, optional
+        How numbers are stored: of `crg` double (the default), float, long text or short text; of `erd` text (the
+        default), float or double.
+
+    Raises
+    ------
+    ValueError
+        If the format cannot be told, or cannot hold the profile: `crg` and `erd` need an even step, `crg` the
+        lateral position of each of several paths.
+    OSError
+        If the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "road.nc"
+    >>> write_profile(Profile([0.0, 1.0, 2.0, 3.0], [0.0, 0.01, 0.0, -0.01]), path)
+    >>> read_profile(path).profile.stations.tolist()
+    [0.0, 1.0, 2.0, 3.0]
+    """
+    path = Path(file)
+    form = FORMATS.get(format) if format is not None else _by_ending(path)
+    if form is None:
+        given = f"there is no format {format!r}" if format is not None else "its ending does not tell the format"
+        raise ValueError(f"{path}: {given}; it is one of {', '.join(FORMATS)}")
+    if form.write is None:
+        writable = ", ".join(name for name, other in FORMATS.items() if other.write)
+        raise ValueError(f"{path}: {form.name} is only read, not written; written are {writable}")
+    if encoding is not None and encoding not in form.encodings:
+        known = ", ".join(filter(None, form.encodings)) or "none"
+        raise ValueError(f"{path}: {form.name} has no encoding {encoding!r}; it has {known}")
+    try:
+        form.write(profile, path, encoding if encoding is not None else form.encodings[0])
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _by_ending(path: Path) -> Format | None:
+    return next((form for form in FORMATS.values() if path.suffix.lower() in form.endings), None)
+
+
+def _recognised(path: Path, name: str | None) -> Format:
+    """Format of a file: the one that was named, or that its first bytes show, or that its ending says."""
+    with path.open("rb") as file:
+        head = file.read(HEAD)
+    if name is not None:
+        return FORMATS[name]
+    ending = _by_ending(path)
+    # Signatures before endings: the ending .txt may stand behind anything.
+    shown = next((form for form in FORMATS.values() if form.recognises(head)), None)
+    if shown is None and ending not in (None, text.FORMAT):
+        raise ValueError(f"is not what its ending {path.suffix} says")
+    return shown or text.FORMAT
+
+
+def _on_paths(record: Record, across: FloatArray) -> Record:
+    """Interpolate a grid at lateral positions."""
+    if record.across is None:
+        raise ValueError("has no lateral positions, so `across` cannot choose among its paths")
+    order = np.argsort(record.across)
+    grid = record.across[order]
+    if grid.size != record.elevations.shape[1] or not np.isfinite(grid).all() or (np.diff(grid) == 0).any():
+        raise ValueError("must have one lateral position for each path, all different, for `across` to choose from")
+    outside = (across < grid[0] - ROUNDING) | (across > grid[-1] + ROUNDING)
+    if outside.any():
+        raise ValueError(
+            f"reaches from {grid[0]:g} m (right) to {grid[-1]:g} m (left), but `across` asks for "
+            f"{across[outside][0]:g} m"
+        )
+    if grid.size == 1:
+        return record._replace(elevations=record.elevations[:, [0] * across.size], across=across, same_across=False)
+    right = np.clip(np.searchsorted(grid, across, side="right") - 1, 0, grid.size - 2)
+    share = np.clip((across - grid[right]) / (grid[right + 1] - grid[right]), 0.0, 1.0)
+    # On a long section its neighbour does not count, even where that has no elevation.
+    share = np.where(np.abs(share - np.round(share)) < ROUNDING, np.round(share), share)
+    rights, lefts = record.elevations[:, order[right]], record.elevations[:, order[right + 1]]
+    elevations = np.where(share == 0, rights, np.where(share == 1, lefts, rights + share * (lefts - rights)))
+    return record._replace(elevations=elevations, across=across, same_across=False)
+
+
+def _cropped_rims(record: Record, *, sides: bool) -> Record:
+    """Leave out what has no elevation at the sides of a grid, if asked, and at its ends."""
+    missing = np.isnan(record.elevations)
+    steps = list(record.steps)
+    left, right = 0, missing.shape[1]
+    if sides:
+        full = np.flatnonzero(~missing.any(axis=0))
+        if not full.size:
+            raise ValueError("has no long section with an elevation at every station: choose paths by `across`")
+        left, right = int(full[0]), int(full[-1]) + 1
+    kept = np.flatnonzero(~missing[:, left:right].any(axis=1))
+    if not kept.size:
+        raise ValueError("has no station with an elevation on every path")
+    first, last = int(kept[0]), int(kept[-1]) + 1
+    if (left, right) != (0, missing.shape[1]):
+        steps.append(f"left out {left} long sections at the left rim and {missing.shape[1] - right} at the right")
+    if (first, last) != (0, len(missing)):
+        steps.append(f"left out {first} stations at the beginning and {len(missing) - last} at the end")
+    place = record.place
+    return record._replace(
+        stations=record.stations[first:last],
+        elevations=record.elevations[first:last, left:right],
+        across=None if record.across is None else record.across[left:right],
+        steps=tuple(steps),
+        place=lambda row: place(row + first),
+    )
+
+
+def _completed(record: Record, repair_gaps: float | None) -> Record:
+    """Fill gaps that may be filled, and refuse what is missing otherwise."""
+    bad = np.flatnonzero(~np.isfinite(record.stations))
+    if bad.size:
+        raise ValueError(f"{record.place(int(bad[0]))}: there is no station, got {record.stations[bad[0]]}")
+    falls = np.flatnonzero(np.diff(record.stations) <= 0)
+    if falls.size:
+        n = int(falls[0])
+        raise ValueError(
+            f"{record.place(n + 1)}: distance must increase, got {record.stations[n]:g} m followed by "
+            f"{record.stations[n + 1]:g} m"
+        )
+    infinite = np.argwhere(np.isinf(record.elevations))
+    if infinite.size:
+        raise ValueError(f"{record.place(int(infinite[0][0]))}: elevation must be finite, got inf")
+    gaps = [gap for path in range(record.elevations.shape[1]) for gap in _gaps(record, path)]
+    if not gaps:
+        return record
+    missing = sum(gap.missing for gap in gaps)
+    first, longest = gaps[0], max(gaps, key=lambda gap: gap.length)
+    if repair_gaps is None:
+        raise ValueError(
+            f"{record.place(first.first)}: no elevation {_at(record, first)}; in all {missing} elevations are "
+            f"missing in {len(gaps)} gaps, the longest {_long(longest)} {_at(record, longest)}. `repair_gaps` "
+            "fills gaps up to a length, `crop_rims` leaves out the rims of a grid"
+        )
+    if longest.length > repair_gaps:
+        raise ValueError(
+            f"{record.place(longest.first)}: the gap {_at(record, longest)} is {_long(longest)}, and `repair_gaps` "
+            f"allows {repair_gaps:g} m"
+        )
+    elevations = record.elevations.copy()
+    for path in {gap.path for gap in gaps}:
+        column = elevations[:, path]
+        there = ~np.isnan(column)
+        column[~there] = np.interp(record.stations[~there], record.stations[there], column[there])
+    done = (
+        f"filled {missing} missing elevations in {len(gaps)} gaps by straight lines, the longest {_long(longest)} "
+        f"{_at(record, longest)}"
+    )
+    return record._replace(elevations=elevations, steps=(*record.steps, done))
+
+
+class _Gap(NamedTuple):
+    """Consecutive stations of one path without an elevation."""
+
+    path: int
+    first: int
+    missing: int
+    length: float  # between the elevations on either side [m]; inf at an end
+
+
+def _gaps(record: Record, path: int) -> list[_Gap]:
+    missing = np.isnan(record.elevations[:, path])
+    if not missing.any():
+        return []
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]])))
+    bounds = np.concatenate([[-np.inf], record.stations, [np.inf]])
+    return [
+        _Gap(path, int(first), int(end - first), float(bounds[end + 1] - bounds[first]))
+        for first, end in zip(edges[::2], edges[1::2], strict=True)
+    ]
+
+
+def _long(gap: _Gap) -> str:
+    return f"{gap.length:.4g} m long" if np.isfinite(gap.length) else "open, at an end of the profile"
+
+
+def _at(record: Record, gap: _Gap) -> str:
+    """Say where a gap begins, and on which path."""
+    station = f"at {record.stations[gap.first]:g} m"
+    if record.across is not None:
+        return f"{station}, {record.across[gap.path]:g} m across"
+    return station if record.elevations.shape[1] == 1 else f"{station} on path {gap.path}"
+
+
+def _sentence(name: str, profile: Profile, record: Record) -> str:
+    stations, elevation = profile.stations, profile.columns
+    step = profile.even_step()
+    steps = np.diff(stations)
+    spacing = f"{step:.4g} m" if step is not None else f"{steps.min():.4g}–{steps.max():.4g} m"
+    return (
+        f"{name}: {stations.size} stations from {stations[0]:g} m to {stations[-1]:g} m every {spacing}, "
+        f"{profile.paths} path(s), elevation {elevation.min():g} to {elevation.max():g} m, {record.understood}"
+        + "".join(f"; {step}" for step in record.steps)
+    )

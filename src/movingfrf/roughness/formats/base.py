@@ -1,0 +1,176 @@
+"""What every format has in common: the record it fills, units of length, and how much a file may claim."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from movingfrf._checks import FloatArray
+from movingfrf.roughness.profiles import Profile
+
+# A column of a file: its name, or its number counted from 0.
+Column = str | int
+
+# Metres in one unit of length.
+METRES = {
+    "m": 1.0,
+    "metre": 1.0,
+    "metres": 1.0,
+    "meter": 1.0,
+    "meters": 1.0,
+    "dm": 0.1,
+    "cm": 0.01,
+    "mm": 1e-3,
+    "um": 1e-6,
+    "µm": 1e-6,
+    "μm": 1e-6,  # the Greek letter
+    "km": 1e3,
+    "in": 0.0254,
+    "in.": 0.0254,
+    "inch": 0.0254,
+    "inches": 0.0254,
+    "ft": 0.3048,
+    "ft.": 0.3048,
+    "foot": 0.3048,
+    "feet": 0.3048,
+    "yd": 0.9144,
+    "mi": 1609.344,
+    "mile": 1609.344,
+    "miles": 1609.344,
+}
+
+
+def _numbered(row: int) -> str:
+    return f"station number {row}"
+
+
+class Record(NamedTuple):
+    """What a file says, before anything is decided about it."""
+
+    stations: FloatArray  # (distance,) [m]
+    elevations: FloatArray  # (distance, path) [m], nan where the file has none
+    understood: str  # how the numbers were read
+    across: FloatArray | None = None  # (path,) [m], left positive, where the file says so
+    source: str = ""  # what the profile in the file was made from
+    steps: tuple[str, ...] = ()  # what was done to it before, and in reading
+    place: Callable[[int], str] = _numbered  # where in the file a station stands
+    same_across: bool = False  # one elevation for all paths
+
+
+class Format(NamedTuple):
+    """A format: how it is recognised, read and written."""
+
+    name: str
+    endings: tuple[str, ...]
+    recognises: Callable[[bytes], bool]  # from the first bytes of a file
+    read: Callable[[Path, Sequence[Column] | None], Record]
+    write: Callable[[Profile, Path, str], None] | None = None
+    encodings: tuple[str, ...] = ("",)  # how it can be written; the first is the default
+
+
+def metres(unit: str, what: str) -> float:
+    """Metres in a unit of length.
+
+    Parameters
+    ----------
+    unit : str
+        The unit, as a file has it.
+    what : str
+        What is measured in it, for the message.
+
+    Returns
+    -------
+    float
+        Its length [m].
+
+    Raises
+    ------
+    ValueError
+        If it is not a unit of length.
+    """
+    word = unit.strip().strip("\"'").lower()
+    if word not in METRES:
+        raise ValueError(
+            f"the unit {unit.strip()[:30]!r} of {what} is not known; lengths may be in "
+            f"{', '.join(dict.fromkeys(u for u in METRES if len(u) < 3))}; `columns` chooses other columns"
+        )
+    return METRES[word]
+
+
+def unit_in(name: str) -> str | None:
+    """Find the unit in a column's name: in square brackets, or else in round ones; None without brackets."""
+    found = re.search(r"\[([^\]]*)\]", name) or re.search(r"\(([^)]*)\)", name)
+    return found.group(1) if found else None
+
+
+def scaled(values: FloatArray, scale: float) -> FloatArray:
+    """Convert to metres; a number stays as it is where it is in metres already."""
+    return values if scale == 1.0 else values * scale
+
+
+def chosen(names: Sequence[str], columns: Sequence[Column]) -> list[int]:
+    """Numbers of the columns that were asked for.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names that the file has.
+    columns : sequence of str or int
+        Names, with or without the unit in brackets, or numbers counted from 0.
+
+    Returns
+    -------
+    list of int
+        One number for each.
+
+    Raises
+    ------
+    ValueError
+        If there is no such column, with those that there are.
+    """
+    bare = [re.sub(r"[\[(].*", "", name).strip().lower() for name in names]
+    found = []
+    for column in columns:
+        if isinstance(column, str) and column in names:
+            found.append(list(names).index(column))
+        elif isinstance(column, str) and bare.count(column.strip().lower()) == 1:
+            found.append(bare.index(column.strip().lower()))
+        elif not isinstance(column, str) and 0 <= column < len(names):
+            found.append(int(column))
+        else:
+            raise ValueError(f"there is no column {column!r}; there are {listed(names)}")
+    if len(set(found)) < len(found):
+        raise ValueError(f"the columns {list(columns)!r} name one column twice")
+    return found
+
+
+def listed(names: Sequence[str], most: int = 12) -> str:
+    """Write names one after the other, the first of them where there are many."""
+    shown = ", ".join(repr(name[:40]) for name in names[:most])
+    return shown if len(names) <= most else f"{shown} and {len(names) - most} more"
+
+
+def contents(path: Path) -> bytes:
+    """Bytes of a file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    bytes
+        What it holds.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ValueError(f"cannot be read: {error.strerror or error}") from None

@@ -1,0 +1,196 @@
+"""ERD, the files of UMTRI's Engineering Research Division: a header of keywords, then numbers as text or binary."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from movingfrf._checks import FloatArray
+from movingfrf.roughness.formats import columns as text
+from movingfrf.roughness.formats.base import Column, Format, Record, chosen, contents, listed, metres, scaled
+from movingfrf.roughness.profiles import Profile
+
+SIGNATURE = b"ERDFILEV"
+
+# Keyword and names are fields of eight characters; a line with & continues the names of the line before.
+FIELD = 8
+
+# How numbers are stored, by the fifth number of the second line: binary, or None for text.
+STORED: dict[int, np.dtype[np.generic] | None] = {
+    0: np.dtype("<i2"),
+    1: np.dtype("<f4"),
+    2: np.dtype("<f8"),
+    5: None,
+}
+ENCODINGS = {"text": 5, "float": 1, "double": 2}
+
+# A header is short; what is longer is none.
+LONGEST_HEADER = 2**20
+
+
+def read(path: Path, columns: Sequence[Column] | None) -> Record:
+    """Read an ERD file; binary numbers lie beside it, in a file of its name that ends in .bin."""
+    data = contents(path)
+    header, body, below = _split(data)
+    count, samples, key, step = _storage(header)
+    words = {line[:FIELD].strip().upper(): line[FIELD:] for line in header[2:]}
+    for keyword in ("GAIN", "OFFSET"):
+        if any(word.startswith(keyword) for word in words):
+            raise ValueError(f"scales its numbers by {keyword}, which is not understood")
+    names = _fields(header, "SHORTNAM", count)
+    units = _fields(header, "UNITSNAM", count)
+    used = list(range(count)) if columns is None else chosen(names, columns)
+    scales = [metres(units[n] or "m", f"channel {names[n]!r}") for n in used]
+    along = words.get("XUNITS", "").strip()
+    scale = metres(along or "m", "XUNITS")
+    start = _number(words.get("XSTART", "0"), "XSTART")
+    values = _text(body, count, below) if STORED[key] is None else _binary(path, count, STORED[key])
+    if samples >= 0 and len(values) != samples:
+        raise ValueError(f"announces {samples} samples for each channel, but {len(values)} are there")
+    if not step > 0:
+        raise ValueError(f"must have a positive step between samples, got {step!r}")
+    elevations = np.stack([scaled(values[:, n], s) for n, s in zip(used, scales, strict=True)], axis=1)
+    said = sorted({units[n] or "metres, since no unit is given" for n in used})
+    understood = (
+        f"ERD with {'text' if STORED[key] is None else f'binary numbers ({STORED[key]})'}, channels "
+        f"{listed([names[n] for n in used])} in {', '.join(said)}, stations every {step:g} {along or 'm'}"
+    )
+    return Record(
+        (start + step * np.arange(len(values))) * scale,
+        elevations,
+        understood,
+        source=words.get("TITLE", "").strip(),
+        place=lambda row: f"sample {row + 1}",
+        same_across=len(used) == 1,
+    )
+
+
+def write(profile: Profile, path: Path, encoding: str) -> None:
+    """Write an ERD file: numbers as text in full, or binary beside it."""
+    step = profile.require_even("an ERD file")
+    elevation = profile.columns
+    key = ENCODINGS[encoding]
+    names = [f"Path{p}" for p in range(elevation.shape[1])]
+    stored = STORED[key]
+    record = -1 if stored is None else stored.itemsize * len(names)
+    storage = f"{len(names)}, {len(elevation)}, -1, {record}, {key}, {step!r}, -1,"
+    lines = [
+        "ERDFILEV2.00",
+        storage,
+        f"TITLE   {' '.join(profile.source.split())[:70]}",
+        "SHORTNAM" + "".join(f"{name:{FIELD}}" for name in names),
+        "UNITSNAM" + f"{'m':{FIELD}}" * len(names),
+        "XLABEL  Distance",
+        "XUNITS  m",
+        f"XSTART  {float(profile.stations[0])!r}",
+        *(f"HISTORY {' '.join(sentence.split())}" for sentence in profile.steps),
+        "END",
+    ]
+    with path.open("w", encoding="latin-1", errors="replace", newline="\n") as file:
+        file.writelines(f"{line.rstrip()}\n" for line in lines)
+        if stored is None:
+            for first in range(0, len(elevation), text.WRITTEN_AT_ONCE):
+                block = elevation[first : first + text.WRITTEN_AT_ONCE].tolist()
+                file.writelines(" ".join(map(repr, row)) + "\n" for row in block)
+    if stored is not None:
+        elevation.astype(stored).tofile(f"{path}.bin")
+
+
+def _split(data: bytes) -> tuple[list[str], bytes, int]:
+    """Lines of the header, what follows it, and the number of the line where that begins."""
+    lines: list[str] = []
+    at = 0
+    while at < min(len(data), LONGEST_HEADER):
+        end = data.find(b"\n", at)
+        end = len(data) if end < 0 else end
+        line = data[at:end].decode("latin-1").rstrip("\r")
+        at = end + 1
+        if line[:FIELD].strip().upper() == "END":
+            return lines, data[at:], len(lines) + 2
+        lines.append(line)
+    raise ValueError("has no line END that closes the header of an ERD file")
+
+
+def _storage(header: Sequence[str]) -> tuple[int, int, int, float]:
+    """Read the second line: number of channels and samples, how they are stored, and the step."""
+    fields = [field.strip() for field in header[1].split(",")] if len(header) > 1 else []
+    if len(fields) < 6:
+        raise ValueError(
+            "line 2: expected channels, samples, records, bytes, storage and step with commas between them"
+        )
+    try:
+        count, samples, key = int(fields[0]), int(fields[1]), int(fields[4])
+    except ValueError:
+        raise ValueError(f"line 2: expected whole numbers, got {header[1][:60]!r}") from None
+    if key not in STORED:
+        known = ", ".join(map(str, STORED))
+        raise ValueError(f"line 2: numbers stored in the way {key} are not understood, only in the ways {known}")
+    if not 1 <= count <= LONGEST_HEADER:
+        raise ValueError(f"line 2: expected at least one channel, got {count}")
+    return count, samples, key, _number(fields[5], "the step")
+
+
+def _number(word: str, what: str) -> float:
+    try:
+        number = float(word)
+    except ValueError:
+        number = float("nan")
+    if not np.isfinite(number):
+        raise ValueError(f"must have a number for {what}, got {word.strip()[:30]!r}")
+    return number
+
+
+def _fields(header: Sequence[str], keyword: str, count: int) -> list[str]:
+    """Texts of one keyword, one for each channel; empty where there are fewer."""
+    words = ""
+    current = False
+    for line in header[2:]:
+        if not line.startswith("&"):
+            current = line[:FIELD].strip().upper() == keyword
+        if current:
+            words += line[FIELD:]
+    found = [words[at : at + FIELD].strip() for at in range(0, len(words), FIELD)][:count]
+    if keyword == "SHORTNAM":
+        return [found[n] if n < len(found) and found[n] else str(n) for n in range(count)]
+    return found + [""] * (count - len(found))
+
+
+def _text(body: bytes, count: int, below: int) -> FloatArray:
+    """Read numbers as text; a line may hold a part of a sample or several."""
+    if not body.strip():
+        raise ValueError("has no numbers behind its header")
+    first = body.lstrip().split(b"\n", 1)[0]
+    separator = "," if b"," in first else None
+    width = len([word for word in first.decode("latin-1").split(separator) if word.strip()])
+    if width < 1 or (width % count and count % width):
+        raise ValueError(f"line {below}: {width} numbers in a line do not fit {count} channels")
+    skipped = len(body) - len(body.lstrip())
+    below += body[:skipped].count(b"\n")
+    layout = text.Layout(separator, ".", "\x01", [str(n) for n in range(width)], [None] * width, 1, 0)
+    try:
+        values = text.numbers(body[skipped:], "latin-1", layout)
+    except ValueError as error:
+        raise ValueError(f"behind the header, which ends above line {below}: {error}") from None
+    if values.size % count:
+        raise ValueError(f"has {values.size} numbers, which do not fit {count} channels")
+    return values.reshape(-1, count)
+
+
+def _binary(path: Path, count: int, stored: np.dtype[np.generic] | None) -> FloatArray:
+    """Read binary numbers, little-endian, sample by sample."""
+    assert stored is not None
+    beside = [file for file in (Path(f"{path}.bin"), path.with_suffix(".bin")) if file.exists()]
+    if not beside:
+        raise ValueError(f"needs its binary numbers in {path.name}.bin beside it, which is not there")
+    data = contents(beside[0])
+    if len(data) % (stored.itemsize * count):
+        raise ValueError(
+            f"{beside[0].name} has {len(data)} bytes, which do not fit {count} channels of {stored.itemsize} bytes"
+        )
+    with np.errstate(invalid="ignore"):  # whatever the bits say is looked at later
+        return np.frombuffer(data, stored).reshape(-1, count).astype(float)
+
+
+FORMAT = Format("erd", (".erd",), lambda head: head.startswith(SIGNATURE), read, write, tuple(ENCODINGS))

@@ -1,0 +1,100 @@
+"""Arrays in HDF5 files, which are behind netCDF 4 and MATLAB 7.3.
+
+Some damaged files make the HDF5 library run forever, or crash, where nothing in the same process can stop it. So a
+file is taken apart in a process of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._checks import FloatArray
+from movingfrf.matlab_file import UNPACKED, UNPACKED_LEAST
+from movingfrf.roughness.formats.arrays import Array
+
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
+
+# Where the superblock holds the addresses of the beginning and the end of the data, by its version.
+ADDRESSES = {0: (24, 40), 1: (28, 44), 2: (12, 28), 3: (12, 28)}
+
+# What may stand behind the end of the data [byte].
+TRAILING = 4096
+
+# How long the library may take [s], and how much it reads in a second at the least [byte].
+PATIENCE, PACE = 20.0, 5e6
+
+
+class Contents(NamedTuple):
+    """Arrays of real numbers at the top of a file, and its texts about the whole."""
+
+    arrays: dict[str, Array]
+    attributes: dict[str, str]
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[Contents]:
+    """Open a file for the time of the block.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Yields
+    ------
+    Contents
+        Arrays, which can be loaded within the block, and attributes.
+
+    Raises
+    ------
+    ValueError
+        If it is no such file, or damaged.
+    """
+    size = _require_bounds(path)
+    most = max(UNPACKED * size, UNPACKED_LEAST)
+    with tempfile.TemporaryDirectory(prefix="movingfrf-") as name:
+        folder = Path(name)
+        child = Path(__file__).with_name("hdf_child.py")
+        command = [sys.executable, "-P", str(child), str(path.resolve()), name, str(most)]
+        try:
+            done = subprocess.run(command, capture_output=True, timeout=PATIENCE + size / PACE, check=False)
+        except subprocess.TimeoutExpired:
+            raise ValueError("is damaged: reading it comes to no end") from None
+        index = folder / "index.json"
+        if done.returncode or not index.exists():
+            said = done.stderr.decode("utf-8", "replace").strip().splitlines()
+            raise ValueError(f"is damaged, or no HDF5 file: {said[-1] if said else 'the HDF5 library fails on it'}")
+        content = json.loads(index.read_text(encoding="utf-8"))
+        arrays = {
+            item["name"]: Array(tuple(item["shape"]), partial(_load, folder / f"{n}.npy"), item["unit"])
+            for n, item in enumerate(content["arrays"])
+        }
+        yield Contents(arrays, content["attributes"])
+
+
+def _load(file: Path) -> FloatArray:
+    loaded: FloatArray = np.load(file)
+    return loaded
+
+
+def _require_bounds(path: Path) -> int:
+    """Size of a file; one that does not end where it says makes the library lose memory and time."""
+    with path.open("rb") as file:
+        head = file.read(1024)
+    block = head[max(head.find(SIGNATURE), 0) :]
+    places = ADDRESSES.get(block[8]) if len(block) > 8 else None
+    base, end = [int.from_bytes(block[at : at + 8], "little") for at in places or (0, 0)]
+    size = path.stat().st_size
+    if places is None or base > size or not max(size - TRAILING, 1) <= end <= size:
+        raise ValueError("is damaged, cut short, or no HDF5 file: it does not end where it says")
+    return size

@@ -1,0 +1,79 @@
+"""Takes the arrays out of an HDF5 file, in a process of its own: see `hdf`.
+
+Arguments: the file, a folder to write into, and the most bytes that all arrays together may have. Writes each array
+of real numbers as 0.npy, 1.npy and so on, and index.json about them. What is wrong with the file goes to standard
+error.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+# Classes of MATLAB that are stored as numbers and are none.
+NO_NUMBERS = ("char", "logical", "cell", "struct", "function_handle")
+
+# What h5py raises where a file is damaged.
+DAMAGED = (OSError, RuntimeError, KeyError, TypeError, OverflowError, SystemError, AttributeError, ValueError)
+
+REFUSED = 3
+
+
+def text(value: Any) -> str:
+    """Read text of an attribute; empty if it is something else."""
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    return value if isinstance(value, str) else ""
+
+
+def number(item: h5py.Dataset, attribute: str, default: float) -> float:
+    """Read an attribute by which netCDF packs numbers; HDF5 may hold it as an array of one."""
+    value = np.asarray(item.attrs.get(attribute, default))
+    return float(value.ravel()[0]) if value.size == 1 and value.dtype.kind in "iuf" else default
+
+
+def values(item: h5py.Dataset) -> np.ndarray:
+    """Read an array as netCDF means it: scaled, and nan where it is filled."""
+    stored = np.asarray(item[()])
+    found = stored.astype(float)
+    fill = number(item, "_FillValue", float("nan"))
+    if np.isfinite(fill):
+        found[stored == fill] = np.nan
+    with np.errstate(all="ignore"):  # whatever a damaged file says is looked at later
+        return found * number(item, "scale_factor", 1.0) + number(item, "add_offset", 0.0)
+
+
+def extract(file: Path, folder: Path, most: float) -> None:
+    """Write arrays and index."""
+    listed: list[dict[str, Any]] = []
+    with h5py.File(file, "r") as opened:
+        for name, item in opened.items():
+            if not isinstance(item, h5py.Dataset) or item.shape is None or item.dtype.kind not in "iuf":
+                continue
+            # MATLAB stores text, cells and the like as numbers too, and says so.
+            if text(item.attrs.get("MATLAB_class", "")) in NO_NUMBERS:
+                continue
+            needed = 8.0 * float(np.prod(item.shape, dtype=float))
+            if needed > most:
+                raise ValueError(
+                    f"the array {name!r} claims {needed / 2**20:.4g} MiB, far more than the file can hold: it is "
+                    "damaged, or packed so tightly that it must be unpacked elsewhere first"
+                )
+            most -= needed
+            np.save(folder / f"{len(listed)}.npy", values(item))
+            listed.append({"name": name, "shape": item.shape, "unit": text(item.attrs.get("units", ""))})
+        attributes = {name: text(opened.attrs.get(name, "")) for name in ("source", "steps")}
+    (folder / "index.json").write_text(json.dumps({"arrays": listed, "attributes": attributes}), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    try:
+        extract(Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]))
+    except DAMAGED as error:
+        print(error, file=sys.stderr)
+        sys.exit(REFUSED)

@@ -1,0 +1,40 @@
+"""netCDF 4: what xarray and many others open; keeps everything that a profile knows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from movingfrf.roughness.formats import arrays, hdf
+from movingfrf.roughness.formats.base import Column, Format, Record
+from movingfrf.roughness.profiles import Profile
+
+# Between the sentences of an attribute: netCDF turns a list of one into text.
+BETWEEN = "\n"
+
+
+def read(path: Path, columns: Sequence[Column] | None) -> Record:
+    """Read distance and elevation, and where they come from."""
+    with hdf.opened(path) as content:
+        found = arrays.record(content.arrays, columns, "netCDF")
+    source, steps = content.attributes["source"], content.attributes["steps"]
+    return found._replace(source=source, steps=tuple(step for step in steps.split(BETWEEN) if step))
+
+
+def write(profile: Profile, path: Path, encoding: str = "") -> None:
+    """Write distance, elevation, lateral positions, source and steps."""
+    import xarray as xr
+
+    dims = ("distance",) if profile.same_across else ("distance", "path")
+    variables = {
+        "elevation": xr.Variable(dims, profile.elevation, {"units": "m", "long_name": "elevation, positive up"})
+    }
+    if profile.across is not None:
+        words = {"units": "m", "long_name": "lateral position, left positive"}
+        variables["across"] = xr.Variable(("path",), list(profile.across), words)
+    distance = xr.Variable(("distance",), profile.stations, {"units": "m", "long_name": "distance along the road"})
+    attributes = {"source": profile.source, "steps": BETWEEN.join(profile.steps)}
+    xr.Dataset(variables, {"distance": distance}, attributes).to_netcdf(path, engine="h5netcdf")
+
+
+FORMAT = Format("netcdf", (".nc", ".nc4", ".h5"), lambda head: head.startswith(hdf.SIGNATURE), read, write)

@@ -1,1 +1,0 @@
-"""Readers of profiles, one file per format."""

@@ -1,0 +1,381 @@
+"""What a vehicle does at its contacts, frequency by frequency.
+
+The guideway moves the vehicle by d below its contacts. Elastic contacts pass that on through springs and dashpots
+k(ω) = k + iωc; rigid ones prescribe the motion above them, B_r q = d_r. Split q = T p + S d into free coordinates p
+and prescribed ones, so that B_r T = 0 and B_r S = 1; then the equations of motion, A(ω) = K + iωC − ω²M with the
+elastic contact springs included, leave
+
+    P p = H d,   F = Hᵀ p − E d,   P = Tᵀ A T,   H = Tᵀ (B_eᵀ k − A S),
+    E = k − k B_e S − Sᵀ B_eᵀ k + Sᵀ A S,
+
+with F the contact force (compression positive). The dynamic stiffness at the contacts is D = E − Hᵀ P⁻¹ H. H and E
+are polynomials in iω, of first degree (E = k, H = Bᵀ k) where all contacts are elastic, of second where some are
+rigid. No large number stands for rigidity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import scipy.linalg
+
+from movingfrf._checks import BoolArray, ComplexArray, FloatArray, IntArray
+
+# Above this condition number of the modal matrix (a defective or nearly defective mode) the modes no longer
+# carry the digits and each frequency is solved directly.
+WORST_MODAL_CONDITION = 1e6
+
+# Rigid contacts whose prescribed motions are closer to each other than this prescribe the same one twice.
+INDEPENDENT = 1e-9
+
+
+class Matrices(NamedTuple):
+    """Mass, damping and stiffness, or any polynomial in iω: the coefficients of 1, iω and (iω)² in turn."""
+
+    constant: FloatArray
+    linear: FloatArray
+    square: FloatArray
+
+    def mapped(self, left: FloatArray, right: FloatArray) -> Matrices:
+        """Multiply every coefficient from both sides."""
+        return Matrices(*(left @ part @ right for part in self))
+
+    def transposed(self) -> Matrices:
+        """Transpose every coefficient."""
+        return Matrices(*(part.T for part in self))
+
+    def terms(self) -> list[tuple[int, FloatArray]]:
+        """Powers of iω whose coefficients are not zero."""
+        return [(power, part) for power, part in enumerate(self) if part.any()]
+
+    def times(self, omega: ComplexArray, columns: ComplexArray) -> ComplexArray:
+        """Multiply with a column per frequency, shapes (i, frequency) and (j, frequency)."""
+        # Horner's scheme: no column is multiplied with a power of iω twice.
+        s = 1j * omega
+        product: ComplexArray = np.zeros((len(self.constant), omega.size), complex)
+        for part in reversed(self):
+            if product.any():
+                product *= s
+            if part.any():
+                product += part @ columns
+        return product
+
+    def at(self, omega: ComplexArray) -> ComplexArray:
+        """Evaluate at some frequencies [rad/s], shape (frequency, *coefficient)."""
+        s: ComplexArray = 1j * omega[:, None, None]
+        return self.constant + s * (self.linear + s * self.square)
+
+
+class Split(NamedTuple):
+    """Free and prescribed motion: q = T p + S d."""
+
+    free: FloatArray  # T (dof, free)
+    prescribed: FloatArray  # S (dof, contact), zero for elastic contacts
+    kept: IntArray  # (free,) numbers of the degrees of freedom that p consists of
+
+
+def split(contact_map: FloatArray, rigid: BoolArray) -> Split | None:
+    """Split the motion of a vehicle by its rigid contacts.
+
+    Parameters
+    ----------
+    contact_map : ndarray, shape (contact, dof)
+        Displacement at each contact per degree of freedom.
+    rigid : ndarray, shape (contact,)
+        Which contacts are rigid.
+
+    Returns
+    -------
+    Split or None
+        None if two rigid contacts prescribe the same motion.
+    """
+    contacts, dofs = contact_map.shape
+    rows = contact_map[rigid]
+    count = len(rows)
+    if count > dofs:
+        return None
+    if not count:
+        return Split(np.eye(dofs), np.zeros((dofs, contacts)), np.arange(dofs))
+    # Rotations turn by less than wheels move; a column stands for a motion whatever its unit.
+    size = np.abs(rows).max(axis=0)
+    _, triangle, order = scipy.linalg.qr(rows / np.where(size, size, 1.0), pivoting=True, mode="economic")
+    if np.abs(np.diag(triangle)).min() < INDEPENDENT:
+        return None
+    bound, kept = np.sort(order[:count]), np.sort(order[count:])
+    free, prescribed = np.zeros((dofs, kept.size)), np.zeros((dofs, contacts))
+    free[kept, np.arange(kept.size)] = 1.0
+    inverse = np.linalg.inv(rows[:, bound])
+    free[bound] = -inverse @ rows[:, kept]
+    prescribed[np.ix_(bound, np.flatnonzero(rigid))] = inverse
+    return Split(free, prescribed, kept)
+
+
+class Modes(NamedTuple):
+    """Poles and residues of P⁻¹: the vehicle on its contact springs, the guideway held still."""
+
+    poles: ComplexArray  # (mode,)
+    shapes: ComplexArray  # (free, mode)
+    weights: ComplexArray  # (mode, free), what a force on a coordinate feeds into a mode
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """A part of a vehicle that moves on its own, all of it or one vehicle of a convoy; made by `parts`.
+
+    Parameters
+    ----------
+    dofs, contacts : ndarray
+        Numbers of its degrees of freedom and contacts within the vehicle.
+    motion : Split
+        Its free and prescribed motion.
+    own : Matrices
+        P: dynamic stiffness of the free coordinates.
+    entry : Matrices
+        H: force on the free coordinates per displacement below the contacts, shape (free, contact).
+    direct : Matrices
+        E: force at the contacts per displacement below them, the free coordinates held, shape (contact, contact).
+    modes : Modes or None
+        Of the free coordinates; None if a mode is defective, or so nearly that it carries no digits.
+    """
+
+    dofs: IntArray
+    contacts: IntArray
+    motion: Split
+    own: Matrices
+    entry: Matrices
+    direct: Matrices
+    modes: Modes | None
+
+    def response(self, omega: ComplexArray, displacement: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Motion (dof, frequency) and contact force for a displacement, both (contact, frequency)."""
+        free = self._free(omega, displacement)
+        moved = self.motion.free @ free
+        if self.motion.prescribed.any():
+            moved += self.motion.prescribed @ displacement
+        force = self.entry.transposed().times(omega, free)
+        force -= self.direct.times(omega, displacement)
+        return moved, force
+
+    def _free(self, omega: ComplexArray, displacement: ComplexArray) -> ComplexArray:
+        """Free coordinates p = P⁻¹ H d, shape (free, frequency)."""
+        if not len(self.own.constant):
+            return np.zeros((0, omega.size), complex)
+        if self.modes is None:
+            pushed = self.entry.times(omega, displacement)
+            return np.linalg.solve(self.own.at(omega), pushed.T[:, :, None])[:, :, 0].T
+        poles, shapes, weights = self.modes
+        modal = weights @ self.entry.times(omega, displacement)
+        modal *= _admittance(omega, poles)
+        return shapes @ modal
+
+    def stiffness(self, omega: ComplexArray) -> ComplexArray:
+        """Dynamic stiffness D = E − Hᵀ P⁻¹ H at its contacts, shape (frequency, contact, contact)."""
+        direct = self.direct.at(omega)
+        if not len(self.own.constant):
+            return direct
+        if self.modes is None:
+            entry = self.entry.at(omega)
+            return direct - entry.transpose(0, 2, 1) @ np.linalg.solve(self.own.at(omega), entry)
+        poles, shapes, weights = self.modes
+        count, admittance = len(self.contacts), _admittance(omega, poles)
+        # Hᵀ P⁻¹ H power by power of iω: each is a sum over modes, one product of matrices for all frequencies.
+        carried = np.zeros((5, count, count, len(poles)), complex)
+        for power_out, out in self.entry.terms():
+            for power_in, into in self.entry.terms():
+                carried[power_out + power_in] += (out.T @ shapes)[:, None, :] * (weights @ into).T
+        s = 1j * omega
+        summed = np.zeros((count * count, omega.size), complex)
+        for residues in carried[::-1]:
+            if summed.any():
+                summed *= s
+            if residues.any():
+                summed += residues.reshape(count * count, -1) @ admittance
+        direct -= summed.T.reshape(direct.shape)
+        return direct
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Dynamics:
+    """A vehicle at its contacts, ready to be asked at any frequency; `Vehicle.dynamics()` makes it.
+
+    Parameters
+    ----------
+    parts : tuple of Part
+        Parts that move independently of each other: one, or one per vehicle of a convoy.
+    dofs, contacts : int
+        Number of degrees of freedom and of contacts.
+    """
+
+    parts: tuple[Part, ...]
+    dofs: int
+    contacts: int
+
+    @property
+    def poles(self) -> ComplexArray:
+        """Poles on a rigid road [rad/s], one of each conjugate pair, by ascending magnitude."""
+        poles = np.concatenate([np.linalg.eigvals(state_matrix(part.own)) for part in self.parts]).astype(complex)
+        upper = poles[poles.imag >= 0]
+        return upper[np.argsort(np.abs(upper), kind="stable")]
+
+    def response(self, omega: ComplexArray, displacement: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Motion and contact force of the vehicle that is displaced below its contacts.
+
+        Parameters
+        ----------
+        omega : ndarray, shape (frequency,)
+            Angular frequency [rad/s].
+        displacement : ndarray, shape (frequency, contact)
+            Displacement below the contacts [m], positive down: deflection less elevation.
+
+        Returns
+        -------
+        motion : ndarray, shape (frequency, dof)
+            Motion of each degree of freedom [m or rad].
+        force : ndarray, shape (frequency, contact)
+            Dynamic contact force [N], compression positive: −D d.
+        """
+        # Frequency last while computing: the other axes are too short to loop over first.
+        columns = displacement.T
+        if len(self.parts) == 1:
+            motion, force = self.parts[0].response(omega, columns)
+            return motion.T, force.T
+        motion = np.empty((self.dofs, omega.size), complex)
+        force = np.empty((self.contacts, omega.size), complex)
+        for part in self.parts:
+            motion[part.dofs], force[part.contacts] = part.response(omega, columns[part.contacts])
+        return motion.T, force.T
+
+    def stiffness(self, omega: ComplexArray) -> ComplexArray:
+        """Dynamic stiffness at the contacts.
+
+        Without rigid contacts it stays finite; moving all contacts as a rigid body costs nothing at rest.
+
+        Parameters
+        ----------
+        omega : ndarray, shape (frequency,)
+            Angular frequency [rad/s].
+
+        Returns
+        -------
+        ndarray, shape (frequency, contact, contact)
+            Force that the guideway exerts on the vehicle per displacement below the contacts [N/m].
+        """
+        if len(self.parts) == 1:
+            return self.parts[0].stiffness(omega)
+        stiffness = np.zeros((omega.size, self.contacts, self.contacts), complex)
+        for part in self.parts:
+            stiffness[:, part.contacts[:, None], part.contacts] = part.stiffness(omega)
+        return stiffness
+
+
+def parts(
+    mass: FloatArray,
+    damping: FloatArray,
+    stiffness: FloatArray,
+    contact_map: FloatArray,
+    springs: FloatArray,
+    dashpots: FloatArray,
+) -> tuple[Part, ...]:
+    """Take a vehicle apart into what moves on its own.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : ndarray, shape (dof, dof)
+        Matrices of the vehicle without its contact springs.
+    contact_map : ndarray, shape (contact, dof)
+        Displacement at each contact per degree of freedom.
+    springs, dashpots : ndarray, shape (contact,)
+        Contact stiffness, `inf` for rigid contacts, and contact damping.
+
+    Returns
+    -------
+    tuple of Part
+        In the order of their first degrees of freedom.
+    """
+    whole = Matrices(stiffness, damping, mass)
+    groups = _connected(np.sum([np.abs(part) for part in whole], axis=0), contact_map)
+    return tuple(_part(whole, contact_map, springs, dashpots, dofs) for dofs in groups)
+
+
+def held(
+    matrices: Matrices, contact_map: FloatArray, springs: FloatArray, dashpots: FloatArray
+) -> tuple[Matrices, FloatArray, Matrices]:
+    """Return A with the elastic contact springs in it, the rows of the elastic contacts, and their k(ω)."""
+    elastic = np.isfinite(springs)
+    rows = np.where(elastic[:, None], contact_map, 0.0)
+    k = Matrices(np.diag(np.where(elastic, springs, 0.0)), np.diag(dashpots), np.zeros((len(rows), len(rows))))
+    added = k.mapped(rows.T, rows)
+    return Matrices(*(own + more for own, more in zip(matrices, added, strict=True))), rows, k
+
+
+def _part(
+    whole: Matrices, contact_map: FloatArray, springs: FloatArray, dashpots: FloatArray, dofs: IntArray
+) -> Part:
+    contacts = np.flatnonzero(np.abs(contact_map[:, dofs]).any(axis=1))
+    rows, springs, dashpots = contact_map[np.ix_(contacts, dofs)], springs[contacts], dashpots[contacts]
+    own = Matrices(*(part[np.ix_(dofs, dofs)] for part in whole))
+    motion = split(rows, np.isinf(springs))
+    assert motion is not None  # the vehicle has checked that
+    impedance, elastic, k = held(own, rows, springs, dashpots)
+    free, prescribed = motion.free, motion.prescribed
+    entry = Matrices(*(free.T @ (elastic.T @ c - a @ prescribed) for c, a in zip(k, impedance, strict=True)))
+    direct = Matrices(
+        *(
+            c - c @ elastic @ prescribed - (c @ elastic @ prescribed).T + prescribed.T @ a @ prescribed
+            for c, a in zip(k, impedance, strict=True)
+        )
+    )
+    own = impedance.mapped(free.T, free)
+    return Part(dofs, contacts, motion, own, entry, direct, _modes(own))
+
+
+def _connected(coupling: FloatArray, contact_map: FloatArray) -> Sequence[IntArray]:
+    """Degrees of freedom that act on each other, directly or by way of a contact, group by group."""
+    from scipy.sparse.csgraph import connected_components
+
+    touching = np.abs(contact_map)
+    count, group = connected_components(coupling + touching.T @ touching > 0, directed=False)
+    return [np.flatnonzero(group == number) for number in range(count)]
+
+
+def state_matrix(matrices: Matrices) -> FloatArray:
+    """Rates of displacement and velocity per displacement and velocity."""
+    stiffness, damping, mass = matrices
+    rates = np.linalg.solve(mass, np.hstack([-stiffness, -damping]))
+    return np.vstack([np.hstack([np.zeros_like(mass), np.eye(len(mass))]), rates])
+
+
+def _modes(own: Matrices) -> Modes | None:
+    """Poles and residues; None if a mode is defective, or so nearly that it carries no digits."""
+    dofs = len(own.constant)
+    if not dofs:
+        return None
+    poles, vectors = np.linalg.eig(state_matrix(own))
+    # Displacement and velocity in one unit each, else the condition number measures the units.
+    vectors[dofs:] /= np.abs(poles).max()
+    vectors /= np.linalg.norm(vectors, axis=0)
+    try:
+        inverse = np.linalg.inv(vectors)
+    except np.linalg.LinAlgError:
+        return None
+    if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < WORST_MODAL_CONDITION:
+        return None
+    weights = np.linalg.solve(own.square, inverse[:, dofs:].T).T / np.abs(poles).max()
+    return Modes(poles, vectors[:dofs], weights)
+
+
+def _admittance(omega: ComplexArray, poles: ComplexArray) -> ComplexArray:
+    """1/(iω − λ) for every pole λ, shape (mode, frequency); complex division would take most of the time."""
+    real = (1j * omega).real - poles.real[:, None]
+    imaginary = (1j * omega).imag - poles.imag[:, None]
+    inverse = np.square(real)
+    inverse += np.square(imaginary)
+    np.reciprocal(inverse, out=inverse)
+    admittance = np.empty(inverse.shape, complex)
+    np.multiply(real, inverse, out=admittance.real)
+    np.negative(inverse, out=inverse)
+    np.multiply(imaginary, inverse, out=admittance.imag)
+    return admittance

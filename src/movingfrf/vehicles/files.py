@@ -1,0 +1,191 @@
+"""Vehicles as matrices in files: MATLAB, NumPy and TOML."""
+
+from __future__ import annotations
+
+import tomllib
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from movingfrf import matlab_file
+from movingfrf._checks import Checks, ParameterError, checking
+from movingfrf.vehicles.base import Vehicle
+from movingfrf.vehicles.contact import Contact
+
+# Matrices and lists that a file must hold, and what may stand beside them.
+REQUIRED = ("mass", "damping", "stiffness", "contact_map", "position", "contact_stiffness")
+PER_CONTACT = {
+    "contact_damping": "damping",
+    "path": "path",
+    "across": "across",
+    "footprint": "footprint",
+    "cams": "cams",
+}
+OPTIONAL = (*PER_CONTACT, "vertical", "dof_names")
+
+# What a file of this kind may weigh at most [bytes]: a vehicle of a thousand degrees of freedom.
+LARGEST_FILE = 2**28
+
+
+def read_vehicle(file: str | Path) -> Vehicle:
+    """Read a vehicle from a file of matrices: `.mat` (MATLAB), `.npz` (NumPy) or `.toml`.
+
+    The file holds `mass`, `damping`, `stiffness` (dof, dof), `contact_map` (contact, dof), and per contact
+    `position` [m], `contact_stiffness` [N/m] (`inf`: rigid) and, where wanted, `contact_damping` [N s/m], `path`
+    (counted from 0), `across` [m], `footprint` [m], `cams` [m]. Optional: `vertical` (dof), else 1 for every degree
+    of freedom; `dof_names`, else `dof_1`, `dof_2` …
+
+    Parameters
+    ----------
+    file : str or Path
+        The file.
+
+    Returns
+    -------
+    Vehicle
+        The vehicle.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, an array is missing, unknown or of the wrong shape, or the vehicle is refused.
+    """
+    path = Path(file)
+    readers = {".mat": _read_mat, ".npz": _read_npz, ".toml": _read_toml}
+    if path.suffix.lower() not in readers:
+        raise ValueError(
+            f"{path}: a vehicle is read from {', '.join(readers)}, not from {path.suffix or 'no ending'}"
+        )
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise ValueError(f"{path}: is larger than {LARGEST_FILE // 2**20} MiB, too large for a vehicle")
+        arrays = readers[path.suffix.lower()](path)
+    except OSError as error:
+        raise ValueError(f"cannot read {path}: {error.strerror or error}") from None
+    try:
+        return _filled(arrays)
+    except ParameterError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def write_vehicle(vehicle: Vehicle, file: str | Path) -> None:
+    """Write a vehicle as a file of matrices, `.mat` or `.npz`, that `read_vehicle` reads.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle.
+    file : str or Path
+        The file; replaced if it is there.
+
+    Raises
+    ------
+    ValueError
+        If the ending is another one.
+    """
+    path = Path(file)
+    mass, damping, stiffness, contact_map = vehicle.matrices
+    arrays: dict[str, Any] = {
+        "mass": mass,
+        "damping": damping,
+        "stiffness": stiffness,
+        "contact_map": contact_map,
+        "position": vehicle.positions,
+        "contact_stiffness": vehicle.springs,
+        **{key: np.array([getattr(one, name) for one in vehicle.contacts]) for key, name in PER_CONTACT.items()},
+        "vertical": np.asarray(vehicle.vertical),
+    }
+    if path.suffix.lower() == ".npz":
+        np.savez(path, **arrays, dof_names=np.array(vehicle.dof_names))
+    elif path.suffix.lower() == ".mat":
+        from scipy.io import savemat
+
+        savemat(path, arrays | {"dof_names": np.array(vehicle.dof_names, object)}, oned_as="column")
+    else:
+        raise ValueError(f"{path}: a vehicle is written to .mat or .npz, not to {path.suffix or 'no ending'}")
+
+
+def _filled(arrays: Mapping[str, Any]) -> Vehicle:
+    with checking() as check:
+        for name in REQUIRED:
+            if name not in arrays:
+                check.refuse(name, "is missing")
+        for name in arrays:
+            if name not in (*REQUIRED, *OPTIONAL):
+                check.refuse(name, f"is not known; a vehicle consists of {', '.join((*REQUIRED, *OPTIONAL))}")
+    with checking() as check:
+        matrices = {name: _table(check, name, arrays[name]) for name in REQUIRED[:4]}
+        contacts, dofs = matrices["contact_map"].shape
+        columns = {
+            name: _row(check, name, arrays[name], contacts)
+            for name in ("position", "contact_stiffness", *PER_CONTACT)
+            if name in arrays
+        }
+        paths = columns.get("path", np.zeros(contacts))
+        if (paths % 1).any():
+            check.refuse("path", "must be whole numbers, counted from 0")
+        vertical = _row(check, "vertical", arrays.get("vertical", np.ones(dofs)), dofs)
+        names = [str(name) for name in arrays.get("dof_names", [f"dof_{n}" for n in range(1, dofs + 1)])]
+    columns = {PER_CONTACT.get(name, name.removeprefix("contact_")): column for name, column in columns.items()}
+    listed = []
+    for number in range(contacts):
+        values: dict[str, Any] = {name: float(column[number]) for name, column in columns.items()}
+        listed.append(Contact(**values | {"path": int(paths[number])}))
+    return Vehicle(**matrices, contacts=listed, vertical=vertical, dof_names=names)
+
+
+def _table(check: Checks, name: str, value: Any) -> np.ndarray:
+    try:
+        table = np.atleast_2d(np.asarray(value, float))
+    except (TypeError, ValueError):
+        check.refuse(name, "must be a matrix of numbers")
+        return np.zeros((1, 1))
+    if table.ndim != 2 or not table.size:
+        check.refuse(name, f"must be a matrix, got an array of shape {table.shape}")
+        return np.zeros((1, 1))
+    return table
+
+
+def _row(check: Checks, name: str, value: Any, count: int) -> np.ndarray:
+    """Numbers of a row or a column."""
+    try:
+        row = np.asarray(value, float).ravel()
+    except (TypeError, ValueError):
+        row = np.empty(0)
+    if row.size != count:
+        check.refuse(name, f"must be {count} numbers, got {row.size}")
+        return np.ones(count)
+    if np.isnan(row).any():
+        check.refuse(name, "must be numbers throughout")
+    return row
+
+
+def _read_mat(path: Path) -> dict[str, Any]:
+    data = path.read_bytes()
+    if data.startswith(b"MATLAB 7.3"):
+        raise ValueError(f"{path}: is a MATLAB 7.3 file; save it with -v7")
+    try:
+        found = matlab_file.contents(data)
+        numbers = {name: stored.load() for name, stored in found.numbers.items()}
+        return numbers | {name: load() if name in OPTIONAL else [] for name, load in found.texts.items()}
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _read_npz(path: Path) -> dict[str, Any]:
+    try:
+        # NumPy leaves a file open that it opened itself and could not read.
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as found:
+            return {name: found[name] for name in found.files}
+    except (ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError, MemoryError) as error:
+        raise ValueError(f"{path}: is not a file of NumPy arrays: {error}") from None
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{path}: is not TOML: {error}") from None

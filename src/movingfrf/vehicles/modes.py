@@ -1,0 +1,78 @@
+"""The vibrations of a vehicle on a rigid road, described."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._checks import ComplexArray, FloatArray
+from movingfrf.vehicles.base import Vehicle
+from movingfrf.vehicles.dynamics import state_matrix
+
+# A description names the degrees of freedom that have at least this share in a mode.
+LEAST = 0.03
+
+
+class Mode(NamedTuple):
+    """One vibration of a vehicle on its contact springs, the guideway rigid."""
+
+    pole: complex  # [rad/s]
+    shape: ComplexArray  # (dof,), its largest entry 1
+    share: FloatArray  # (dof,) M_jj |q_j|², their sum 1: the kinetic energy where the mass matrix is diagonal
+    description: str
+
+    @property
+    def frequency(self) -> float:
+        """Magnitude of the pole over 2π [Hz]."""
+        return abs(self.pole) / (2 * np.pi)
+
+    @property
+    def damping_ratio(self) -> float:
+        """Share of critical damping; 1 for a motion that does not swing."""
+        return float(-self.pole.real / abs(self.pole))
+
+
+def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
+    """Vibrations of a vehicle on a rigid road, with what moves in each.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        Any vehicle.
+
+    Returns
+    -------
+    list of Mode
+        By ascending frequency; a motion that does not swing appears as two.
+
+    Examples
+    --------
+    >>> from movingfrf.vehicles.road import quarter_car
+    >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> [mode.description for mode in vehicle_modes(car)]
+    ['body 100 %', 'wheel 98 %']
+    """
+    mass, found = vehicle.matrices[0], []
+    for part in vehicle.dynamics().parts:
+        if not len(part.own.constant):
+            continue
+        poles, vectors = np.linalg.eig(state_matrix(part.own))
+        shapes = part.motion.free @ vectors[: len(part.own.constant)]
+        for pole, shape in zip(poles.astype(complex), shapes.T, strict=True):
+            if pole.imag < 0:
+                continue
+            whole = np.zeros(len(mass), complex)
+            whole[part.dofs] = shape / shape[np.abs(shape).argmax()]
+            share = np.diag(mass) * np.abs(whole) ** 2
+            share /= share.sum()
+            found.append(Mode(complex(pole), whole, share, _described(vehicle.dof_names, share)))
+    return sorted(found, key=lambda mode: abs(mode.pole))
+
+
+def _described(names: Sequence[str], share: FloatArray) -> str:
+    """Name what moves, the strongest first."""
+    strongest_first = np.argsort(-share, kind="stable").tolist()
+    return ", ".join(f"{names[n]} {100 * share[n]:.0f} %" for n in strongest_first if share[n] >= LEAST)

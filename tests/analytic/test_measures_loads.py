@@ -1,0 +1,194 @@
+"""Loads on the road against closed forms: forces that are cosines of the road, or Gaussian."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import movingfrf as mf
+from movingfrf.metrics.basic import assess
+from movingfrf.schema import COUPLED, labelled
+
+SPEED, STEP = 20.0, 1e-3
+
+
+def travelled(
+    *, amplitude, loads=(5e3, 8e3), positions=(1.5, -1.0), paths=(0, 0), start=3.0, duration=10.0, phase=0.0
+):
+    """Make a result whose dynamic forces are the cosine of the road under them, of 4 m, alike for all contacts."""
+    time = STEP * np.arange(round(duration / STEP))
+    under = start + np.array(positions) + SPEED * time[:, None]
+    force = np.broadcast_to(amplitude, (len(positions),)) * np.cos(2 * np.pi * under / 4.0 + phase)
+    contacts = len(positions)
+    values = {
+        "time": time,
+        "contact": np.arange(contacts),
+        "position": positions,
+        "path": list(paths),
+        "dof": ["body", "pitch"],
+        "dof_unit": ["m", "rad"],
+        "contact_force": force,
+        "static_load": list(loads),
+        "deflection": 0 * force + 1e-3,
+        "static_deflection": [1e-3] * contacts,
+        "motion": np.zeros((time.size, 2)),
+        "acceleration": np.stack([np.sin(2 * np.pi * 8 * time), 0 * time], axis=1),
+        "roughness": 0 * force,
+    }
+    attributes = {"speed": SPEED, "start": start, "time_step": STEP, "movingfrf": "test", "findings": "[]"}
+    return labelled(values, COUPLED, attributes)
+
+
+def test_dynamic_load_coefficient():
+    """A/√2 over the static load; whole waves."""
+    result = travelled(amplitude=1e3)
+    np.testing.assert_allclose(
+        mf.dynamic_load_coefficient(result), 1e3 / np.sqrt(2) / np.array([5e3, 8e3]), rtol=1e-12
+    )
+    assert mf.dynamic_load_coefficient(travelled(amplitude=1.0, loads=(0.0, 1.0)))[0] == np.inf
+
+
+@pytest.mark.parametrize("coefficient", [0.0, 0.1, 0.3])
+def test_road_stress_factor_is_the_gaussian_fourth_moment(coefficient):
+    """E (1 + s Z)⁴ by Gauss–Hermite quadrature, exact for polynomials."""
+    nodes, weights = np.polynomial.hermite_e.hermegauss(5)
+    moment = (weights * (1 + coefficient * nodes) ** 4).sum() / weights.sum()
+    assert mf.road_stress_factor(coefficient) == pytest.approx(moment, rel=1e-12)
+
+
+def test_aggregate_force_of_a_pattern_of_the_road():
+    """Each contact puts P_j + A cos(2πx/λ) on the point x; the points lie where both pass."""
+    worn = mf.aggregate_force(travelled(amplitude=1e3), spacing=0.25)
+    x = worn.distance.values
+    wave = 1e3 * np.cos(2 * np.pi * x / 4.0)
+    # A cubic spline through 200 samples a wave: (2π/200)⁴/384.
+    np.testing.assert_allclose(worn.aggregate_force.values[:, 0], (5e3 + wave) ** 4 + (8e3 + wave) ** 4, rtol=1e-8)
+    assert worn.static_aggregate.item() == pytest.approx(5e3**4 + 8e3**4)
+    # From where the front contact starts to where the rear one ends.
+    assert (x[0], x[-1]) == (3.0 + 1.5, np.floor((3.0 - 1.0 + 20.0 * 9.999) / 0.25) * 0.25)
+    assert worn.aggregate_force.attrs["units"] == "N^4"
+
+
+def test_percentile_of_the_aggregate():
+    """The sum grows with the cosine, which stays below cos(0.05 π) for 95 % of a wave."""
+    (ratio,) = mf.road_wear(travelled(amplitude=1e3))
+    wave = 1e3 * np.cos(0.05 * np.pi)
+    wanted = ((5e3 + wave) ** 4 + (8e3 + wave) ** 4) / (5e3**4 + 8e3**4)
+    # Forty points a wave: the percentile falls between two of them.
+    assert ratio == pytest.approx(wanted, rel=3e-3)
+    assert mf.road_wear(travelled(amplitude=0.0)) == pytest.approx([1.0])
+    assert mf.road_wear(travelled(amplitude=1e3), power=1.0, percentile=50.0) == pytest.approx([1.0], rel=1e-3)
+
+
+def test_tension_wears_nothing():
+    """Where P + A cos is negative it counts as none: the least is what the other contact does."""
+    worn = mf.aggregate_force(travelled(amplitude=[6e3, 0.0]))
+    assert worn.aggregate_force.values.min() == pytest.approx(8e3**4, rel=1e-12)
+
+
+def test_paths_are_apart():
+    worn = mf.aggregate_force(travelled(amplitude=[1e3, 0.0], paths=(0, 1)), power=1.0)
+    assert worn.path.values.tolist() == [0, 1]
+    np.testing.assert_allclose(worn.aggregate_force.values[:, 1], 8e3, rtol=1e-12)
+    assert np.ptp(worn.aggregate_force.values[:, 0]) == pytest.approx(2e3, rel=1e-2)
+    assert worn.aggregate_force.attrs["units"] == "N"
+
+
+@pytest.mark.parametrize("phase", [0.0, np.pi / 3, np.pi / 2, np.pi])
+def test_repeatability_of_shifted_patterns(phase):
+    """The correlation of two cosines is the cosine of their shift, whatever their size, start and static loads.
+
+    Over a stretch that is no whole number of waves: to one wave in the 45 of it.
+    """
+    first = travelled(amplitude=1e3)
+    second = travelled(amplitude=300.0, loads=(1e4, 2e3), start=13.37, phase=phase)
+    assert mf.spatial_repeatability(first, second)[0] == pytest.approx(np.cos(phase), abs=0.02)
+
+
+def test_repeatability_needs_a_road_in_common():
+    first = travelled(amplitude=1e3)
+    assert np.isnan(mf.spatial_repeatability(first, travelled(amplitude=0.0)))[0]
+    with pytest.raises(ValueError, match="none in common"):
+        mf.spatial_repeatability(first, travelled(amplitude=1e3, start=900.0))
+    with pytest.raises(ValueError, match=r"same paths as first, got \[0, 1\] beside \[0\]"):
+        mf.spatial_repeatability(first, travelled(amplitude=1e3, paths=(0, 1)))
+
+
+def test_lost_contact():
+    """P + A cos ≤ 0 for arccos(P/A)/π of every wave of 0.2 s; to one step at each end of a loss."""
+    result = travelled(amplitude=[1e4, 1e3])
+    loss = mf.contact_loss(result)
+    share = np.arccos(5e3 / 1e4) / np.pi
+    assert loss.share == pytest.approx([share, 0.0], abs=2 * STEP / 0.2)
+    assert loss.longest == pytest.approx([0.2 * share, 0.0], abs=2 * STEP)
+    assert mf.contact_loss(travelled(amplitude=0.0, loads=(0.0, 1.0))).share.tolist() == [1.0, 0.0]
+
+
+def test_simulated_trucks_repeat_themselves():
+    """Two runs over one road at one speed are alike; over another road they have nothing in common."""
+    truck = mf.quarter_car(
+        body_mass=8900.0, wheel_mass=1100.0, suspension_stiffness=1e6, suspension_damping=3e4, tyre_stiffness=3.5e6
+    )
+    roads = [mf.realise(mf.IsoRoad.of_class("B"), length=260.0, seed=seed) for seed in (1, 2)]
+    runs = [mf.simulate(mf.RigidGuideway(), truck, road, speed=20.0, duration=12.0) for road in roads]
+    again = mf.simulate(mf.RigidGuideway(), truck, roads[0], speed=20.0, duration=10.0, start=30.0)
+    assert mf.spatial_repeatability(runs[0], again)[0] > 0.95
+    assert abs(mf.spatial_repeatability(*runs)[0]) < 0.3
+
+
+def test_assess_measures_everything():
+    found = {(m.quantity, m.name): m for m in assess(travelled(amplitude=1e4), slope=4.0)}
+    assert found["contact 0 force", "road stress factor"].value == pytest.approx(1 + 6 * 2 + 3 * 4)
+    assert found["contact 0 force", "share of time without contact"].value == pytest.approx(1 / 3, abs=0.01)
+    # Fifty waves in ten seconds, each as bad as five of one a second.
+    amplitude = found["contact 1 force", "damage-equivalent amplitude at 1 Hz"]
+    assert amplitude.value == pytest.approx(1e4 * 5**0.25, rel=1e-3)
+    assert amplitude.units == "N"
+    assert found["path 0 wear", "95th percentile of ΣP⁴ over static"].standard == "Cebon 1999"
+    assert found["body acceleration", "weighted rms"].value == pytest.approx(
+        abs(mf.weighting("Wk", 8.0)) / np.sqrt(2), rel=0.01
+    )
+    assert found["body acceleration", "VDV"].units == "m/s^1.75"
+    assert found["pitch acceleration", "VDV"].units == "rad/s^1.75"
+    assert found["pitch acceleration", "weighted rms"].standard == "ISO 2631-1, We"
+
+
+def test_assess_measures_what_was_chosen():
+    result = travelled(amplitude=1e3)
+    chosen = assess(result, contacts=[1], dofs=["pitch"], weighting="Wb")
+    assert {m.quantity for m in chosen} == {"contact 1 force", "contact 1 deflection", "pitch acceleration"}
+    (rms,) = [m for m in assess(result, dofs=["body"], weighting="Wd") if m.name == "weighted rms"]
+    assert rms.standard == "ISO 2631-1, Wd"
+    assert rms.value == pytest.approx(abs(mf.weighting("Wd", 8.0)) / np.sqrt(2), rel=0.01)
+
+
+def test_usual_measures_are_among_all():
+    result = travelled(amplitude=1e3)
+    everything = assess(result)
+    assert all(measure in everything for measure in mf.measures(result) if not np.isnan(measure.value))
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (
+            lambda r: mf.contact_loss(r.drop_vars("contact_force")),
+            "result must be the coupled response of a vehicle",
+        ),
+        (lambda r: mf.aggregate_force(r, power=0.0), "power must be positive"),
+        (lambda r: mf.aggregate_force(r, spacing=-1.0), "spacing must be positive"),
+        (lambda r: mf.aggregate_force(r.isel(time=slice(0, 20))), "result must be long enough for every contact"),
+        (lambda r: mf.road_wear(r, percentile=101.0), "percentile must lie between 0 and 100 %"),
+        (lambda r: mf.road_stress_factor(-0.1), "coefficient must not be negative"),
+        (lambda r: assess(r, contacts=[2]), "contacts must be among 0, 1, got 2"),
+        (lambda r: assess(r, dofs=["nose"]), "dofs must be among body, pitch, got 'nose'"),
+        (lambda r: assess(r, weighting="Wx"), "weighting must be one of"),
+        (lambda r: assess(r, slope=0.0), "slope must be positive"),
+        (lambda r: assess(r.drop_vars("contact_force")), "result must be the coupled response of a vehicle"),
+        (lambda r: mf.comfort(r, "nose"), "dof must be one of body, pitch, got 'nose'"),
+        (lambda r: mf.comfort(r.drop_vars("acceleration"), "body"), "result must be the coupled response"),
+    ],
+)
+def test_refusals(call, message):
+    with pytest.raises(ValueError, match=message):
+        call(travelled(amplitude=1e3))

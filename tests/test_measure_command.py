@@ -1,0 +1,108 @@
+"""The command `movingfrf measure`: the same numbers as from Python, in a table, as JSON and as CSV."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import movingfrf as mf
+from movingfrf.cli import main
+from movingfrf.output import load, save
+
+
+@pytest.fixture(scope="module")
+def result():
+    truck = mf.half_car(
+        body_mass=17_735.0,
+        pitch_inertia=1.47e5,
+        wheel_masses=(1500.0, 1000.0),
+        suspension_stiffness=(2.47e6, 4.23e6),
+        suspension_damping=(3e4, 4e4),
+        tyre_stiffness=(3.74e6, 4.60e6),
+        tyre_damping=(3.9e3, 4.3e3),
+        axles=(2.216, -2.054),
+    )
+    road = mf.realise(mf.IsoRoad.of_class("A"), length=60.0, seed=1)
+    return mf.simulate(mf.RigidGuideway(), truck, road, speed=15.0, duration=3.0, start=5.0)
+
+
+@pytest.fixture(scope="module")
+def file(result, tmp_path_factory):
+    path = tmp_path_factory.mktemp("measured") / "result.nc"
+    save(result, path)
+    return path
+
+
+def test_table(result, file, capsys):
+    assert main(["measure", str(file)]) == 0
+    told = capsys.readouterr().out
+    for measure in mf.assess(result):
+        assert measure.quantity in told
+        assert f"{measure.name} " in told
+        assert f"{measure.value:.4g}" in told
+    assert "…" not in told
+    assert "ISO 2631-1, Wk" in told
+
+
+def test_files_hold_all_digits_and_units(file, tmp_path):
+    wanted = [measure._asdict() for measure in mf.assess(load(file), slope=4.0)]
+    options = ["measure", str(file), "--slope", "4", "--output"]
+    assert main([*options, str(tmp_path / "m.json")]) == 0
+    content = json.loads((tmp_path / "m.json").read_text(encoding="utf-8"))
+    assert content["measures"] == wanted
+    assert content["settings"]["speed"] == 15.0
+    assert main([*options, str(tmp_path / "m.csv")]) == 0
+    with (tmp_path / "m.csv").open(encoding="utf-8", newline="") as text:
+        rows = list(csv.DictReader(text))
+    assert [row | {"value": float(row["value"])} for row in rows] == wanted
+
+
+def test_choice(file, tmp_path):
+    options = ["--contact", "1", "--dof", "pitch", "--dof", "bounce", "--weighting", "Wd"]
+    assert main(["measure", str(file), *options, "--output", str(tmp_path / "m.csv")]) == 0
+    text = (tmp_path / "m.csv").read_text(encoding="utf-8")
+    assert {line.split(",")[0] for line in text.splitlines()[1:]} == {
+        "contact 1 force",
+        "contact 1 deflection",
+        "pitch acceleration",
+        "bounce acceleration",
+    }
+    assert "bounce acceleration,weighted rms" in text
+    assert '"ISO 2631-1, Wd"' in text
+
+
+def test_a_result_reopens_as_it_was(result, file):
+    assert load(file).identical(result)
+
+
+def test_refusals(result, file, tmp_path, capsys):
+    (tmp_path / "no.nc").write_text("nothing")
+    save(result.drop_vars("contact_force"), tmp_path / "loads.nc")
+    save(result.drop_vars("deflection"), tmp_path / "other.nc")
+    for arguments, message in (
+        ([str(tmp_path / "none.nc")], "none.nc: No such file"),
+        ([str(tmp_path / "no.nc")], "no.nc: is not a netCDF file"),
+        ([str(tmp_path / "other.nc")], "other.nc: is no result of movingfrf"),
+        ([str(tmp_path / "loads.nc")], "result must be the coupled response of a vehicle"),
+        ([str(file), "--output", "m.txt"], "m.txt: must end in .json or .csv"),
+        ([str(file), "--contact", "2"], "contacts must be among 0, 1, got 2"),
+        ([str(file), "--dof", "nose"], "dofs must be among bounce, pitch, front_wheel, rear_wheel, got 'nose'"),
+    ):
+        assert main(["measure", *arguments]) == 2
+        assert message in capsys.readouterr().err
+
+
+def test_the_example_of_the_documentation_runs(capsys):
+    text = (Path(__file__).parents[1] / "docs" / "measures.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    exec(code, {})
+    told = capsys.readouterr().out
+    assert told.count("Cebon 1999") == 2
+    # Every name of the tables is there.
+    names = re.findall(r"`([a-z_]+)(?:\(…\)\.\w+)?`", "".join(re.findall(r"^\|.*\| (.*?) \|$", text, re.MULTILINE)))
+    assert len(names) > 25
+    assert [name for name in names if not hasattr(mf, name)] == []

@@ -1,0 +1,101 @@
+"""`movingfrf random`: files, messages, refusals; the report of a random response."""
+
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import movingfrf as mf
+from movingfrf.cli import main
+from movingfrf.random_measures import random_measures
+from movingfrf.random_report import render
+from tests.helpers import DAMPED, FULL_TRUCK
+from tests.test_scenario import LOADS, TEMPLATE
+
+HARMONIC = re.sub(
+    r"(?s)\[roughness\].*?(?=\n\[|\Z)",
+    '[roughness]\nkind = "harmonic"\namplitude = 0.001\nwavelength = 4.0\n',
+    TEMPLATE,
+)
+
+
+def test_three_files_that_say_the_same(tmp_path, capsys):
+    """Equal bytes in the folder that was named and in the one that is beside the scenario unless told."""
+    scenario, named, usual = tmp_path / "truck.toml", tmp_path / "a", tmp_path / "out" / "truck-random"
+    scenario.write_text(TEMPLATE)
+    command = ["random", str(scenario), "--exposure", "60"]
+    assert main([*command, "--output", str(named)]) == 0
+    assert main(command) == 0
+    told = capsys.readouterr().out
+    for words in ("contact 0 force", "coefficient", "bounce acceleration", "pitch acceleration", "Findings: none"):
+        assert words in told
+    assert sorted(file.name for file in named.iterdir()) == ["random.nc", "report.html", "summary.json"]
+    for file in named.iterdir():
+        assert file.read_bytes() == (usual / file.name).read_bytes(), file.name
+    made = mf.read_scenario(scenario)
+    direct = mf.random_response(
+        made.guideway, made.vehicle, made.road.spectrum, speed=made.journey.speed, coherence=1.0, exposure=60.0
+    )
+    with xr.open_dataset(named / "random.nc") as reopened:
+        assert (reopened.contact_force_density.values == direct.contact_force_density.values).all()
+        assert reopened.attrs["scenario"] == TEMPLATE
+    summary = json.loads((named / "summary.json").read_text(encoding="utf-8"))
+    (rms,) = [m for m in summary["measures"] if m["quantity"] == "contact 1 force" and m["name"] == "rms"]
+    assert rms["value"] == pytest.approx(direct.contact_force_rms.values[1], rel=1e-12)
+    assert rms["units"] == "N"
+    assert summary["settings"]["exposure"] == 60.0
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [(HARMONIC, "the roughness has no spectrum"), (LOADS, "prescribed loads have no random road")],
+)
+def test_what_has_no_spectrum_is_refused(tmp_path, capsys, text, words):
+    scenario = tmp_path / "case.toml"
+    scenario.write_text(text)
+    assert main(["random", str(scenario)]) == 2
+    assert words in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_value_that_is_refused(tmp_path, capsys):
+    scenario = tmp_path / "truck.toml"
+    scenario.write_text(TEMPLATE)
+    assert main(["random", str(scenario), "--exposure", "-1"]) == 2
+    assert "exposure must be positive" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_report():
+    """One page, nothing outside it, findings as sentences, numbers as in the measures."""
+    spectrum = replace(mf.IsoRoad.of_class("A"), roughness=1e-3)
+    result = mf.random_response(
+        DAMPED["euler_bernoulli_winkler"], mf.full_car(**FULL_TRUCK), spectrum, speed=10.0, coherence=0.5
+    )
+    found = random_measures(result)
+    page = render(result, found, title="A <title>", scenario="[run]")
+    assert "A &lt;title&gt;" in page
+    outside = re.sub(r"<svg[^>]*>|xmlns(:\w+)?=\"[^\"]*\"", "", page)
+    assert not re.search(r"(src|href)=\"(?!#)", outside)
+    assert page.count("<svg") == 5
+    assert "Contact 0 would lift off the road about" in page
+    for name in ("static", "crossing rate", "dynamic load coefficient", "road stress factor", "weighted rms (Wk)"):
+        assert name in page
+    static = next(m for m in found if m.quantity == "contact 0 force" and m.name == "static")
+    assert f"<td>{1e-3 * static.value:.2f}</td>" in page
+    assert len(page) < 2e6
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_report_of_what_does_not_move():
+    """A rigid road does not deflect, one road for both sides does not roll: no figure fails, a dash for a rate."""
+    car = mf.full_car(**(FULL_TRUCK | {"sides": (0.9, -0.9)}))
+    result = mf.random_response(mf.RigidGuideway(), car, mf.IsoRoad.of_class("A"), speed=10.0, coherence=1.0)
+    assert not result.deflection_rms.any()
+    assert np.isnan(result.deflection_crossing_rate).all()
+    page = render(result, random_measures(result), title="rigid")
+    assert "<td>–</td>" in page

@@ -1,0 +1,254 @@
+"""Every kind of [roughness]: what it builds from a scenario is what Python builds from the same keywords."""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+import pytest
+
+import movingfrf as mf
+from movingfrf.roads import ROADS, SPECTRA
+from movingfrf.scenario import KINDS, parse_scenario
+
+CAR = """
+[guideway]
+kind = "rigid_guideway"
+[vehicle]
+kind = "full_car"
+body_mass = 840.0
+pitch_inertia = 1100.0
+roll_inertia = 820.0
+wheel_masses = [53.0, 76.0]
+suspension_stiffness = [1.0e4, 1.3e4]
+suspension_damping = [900.0, 900.0]
+tyre_stiffness = [2.0e5, 2.0e5]
+axles = [1.4, -1.47]
+sides = [0.7, -0.75]
+[run]
+speed = 10.0
+duration = 2.0
+"""
+# What the journey needs, from the rear axle's start to the front axle's end.
+START, LENGTH = -1.47, 22.87
+PLACE = {"length": LENGTH, "start": START}
+
+
+def road(text):
+    return parse_scenario(CAR + "[roughness]\n" + text).road
+
+
+def faults(text):
+    with pytest.raises(mf.ScenarioError) as caught:
+        road(text)
+    return {fault.name: fault.message for fault in caught.value.faults}
+
+
+def assert_same(found, expected):
+    np.testing.assert_allclose(found.stations, expected.stations, atol=1e-12)
+    np.testing.assert_allclose(np.asarray(found.elevation), np.asarray(expected.elevation), atol=1e-12)
+
+
+RAIL = mf.ThirdOctaveSpectrum(wavelength=[0.2, 0.16, 0.125], level=[3.0, 1.0, -1.0])
+
+SPECTRUM_KINDS = {
+    "iso_road": ('road_class = "B"\nband = [0.05, 5.0]', mf.IsoRoad.of_class("B", band=(0.05, 5.0))),
+    "fra_track": ("track_class = 4", mf.FraTrack.of_class(4)),
+    "fryba_track": ("roughness = 1e-8", mf.FrybaTrack(roughness=1e-8)),
+    "german_track": ('track_class = "low"', mf.GermanTrack.of_class("low")),
+    "sncf_track": ('track_class = "poor"\nband = [0.05, 0.5]', mf.SncfTrack.of_class("poor", band=(0.05, 0.5))),
+    "chinese_ballastless_track": ("", mf.ChineseBallastlessTrack()),
+    "tabulated_spectrum": (
+        "spatial_frequency = [0.1, 1.0]\nspectral_density = [1e-5, 1e-7]",
+        mf.TabulatedSpectrum(spatial_frequency=[0.1, 1.0], spectral_density=[1e-5, 1e-7]),
+    ),
+    "third_octave_spectrum": ("wavelength = [0.2, 0.16, 0.125]\nlevel = [3.0, 1.0, -1.0]", RAIL),
+    "iso3095_limit": ("", mf.iso3095_limit()),
+}
+
+SHAPE_KINDS = {
+    "harmonic": ("amplitude = 0.01\nwavelength = 2.0", mf.harmonic(amplitude=0.01, wavelength=2.0, **PLACE)),
+    "bump": ("height = 0.01\nwidth = 1.0\nat = 5.0", mf.bump(height=0.01, width=1.0, at=5.0, **PLACE)),
+    "pothole": (
+        "depth = 0.04\nwidth = 0.5\nedge = 0.1\nat = 5.0",
+        mf.pothole(depth=0.04, width=0.5, edge=0.1, at=5.0, **PLACE),
+    ),
+    "faulted_slabs": (
+        "height = 0.004\nspacing = 5.0\nedge = 0.1",
+        mf.faulted_slabs(height=0.004, spacing=5.0, edge=0.1, **PLACE),
+    ),
+    "dipped_joints": (
+        "depth = 0.003\nreach = 1.0\nspacing = 9.0\nrounding = 0.02",
+        mf.dipped_joints(depth=0.003, reach=1.0, spacing=9.0, rounding=0.02, **PLACE),
+    ),
+    "dipped_weld": ("depth = 3e-4\nwidth = 1.0\nat = 5.0", mf.dipped_weld(depth=3e-4, width=1.0, at=5.0, **PLACE)),
+    "wheel_flat": ("radius = 0.46\nchord = 0.1", mf.wheel_flat(radius=0.46, chord=0.1, **PLACE)),
+    "polygon": (
+        "radius = 0.46\norders = [1, 3]\namplitudes = [1e-4, 1e-5]\nseed = 4",
+        mf.polygon(radius=0.46, orders=[1, 3], amplitudes=[1e-4, 1e-5], seed=4, **PLACE),
+    ),
+}
+
+
+def test_every_kind_is_tried_here():
+    assert set(SPECTRUM_KINDS) == set(SPECTRA) == set(KINDS["spectrum"])
+    others = {"laplace_road", "superposed", "side_by_side"}
+    assert {*SPECTRUM_KINDS, *SHAPE_KINDS, *others} == set(ROADS)
+    assert set(ROADS) <= set(KINDS["roughness"])
+
+
+@pytest.mark.parametrize("kind", SPECTRUM_KINDS)
+def test_spectra(kind):
+    keys, spectrum = SPECTRUM_KINDS[kind]
+    step = 0.4 / spectrum.band[1]
+    made = road(f'kind = "{kind}"\n{keys}\nseed = 3\nstep = {step}')
+    assert_same(made.profile, mf.realise(spectrum, step=step, seed=3, **PLACE))
+    assert repr(made.spectrum) == repr(spectrum)
+    assert made.coherence == 1.0
+    assert made.description == f"{spectrum}, seed 3"
+
+
+@pytest.mark.parametrize("kind", SHAPE_KINDS)
+def test_shapes(kind):
+    keys, profile = SHAPE_KINDS[kind]
+    made = road(f'kind = "{kind}"\n{keys}')
+    assert_same(made.profile, profile)
+    assert made.description == profile.source != ""
+    assert made.spectrum is None
+
+
+def test_paths_of_one_surface():
+    made = road('kind = "iso_road"\nroad_class = "C"\nwaviness = 2.2\nacross = [0.7, -0.75]\nseed = 5')
+    spectrum = mf.IsoRoad.of_class("C", waviness=2.2)
+    assert_same(made.profile, mf.realise(spectrum, seed=5, across=[0.7, -0.75], **PLACE))
+    assert made.profile.across == (0.7, -0.75)
+    assert made.coherence == mf.IsotropicCoherence(waviness=2.2)
+    given = road(
+        'kind = "german_track"\ntrack_class = "high"\nstep = 0.2\nacross = [0.75, -0.75]\n'
+        '[roughness.coherence]\nkind = "exponential_coherence"\ndecay = 3.0'
+    )
+    assert given.coherence == mf.ExponentialCoherence(decay=3.0)
+    spectrum = mf.GermanTrack.of_class("high")
+    again = mf.realise(spectrum, step=0.2, across=[0.75, -0.75], coherence=given.coherence, **PLACE)
+    assert_same(given.profile, again)
+
+
+def test_what_seeded_paths_have_in_common():
+    """Nothing, everything, or no one number."""
+    for seeds, common in [("[1, 2]", 0.0), ("[2, 2]", 1.0), ("[1, 2, 2]", None)]:
+        assert road(f'kind = "iso_road"\nroad_class = "C"\nseed = {seeds}').coherence == common
+
+
+def test_laplace_roads():
+    made = road(
+        'kind = "laplace_road"\nkurtosis = 6.0\nsegment = 5.0\nseed = 2\nacross = [0.7, -0.75]\n'
+        'spectrum = {kind = "iso_road", road_class = "D"}'
+    )
+    spectrum = mf.IsoRoad.of_class("D")
+    across = [0.7, -0.75]
+    assert_same(made.profile, mf.realise_laplace(spectrum, kurtosis=6, segment=5, seed=2, across=across, **PLACE))
+    assert (made.spectrum, made.coherence) == (None, None)  # not Gaussian
+
+
+PARTS = """
+kind = "superposed"
+[[roughness.parts]]
+kind = "iso_road"
+road_class = "B"
+seed = [1, 2]
+[[roughness.parts]]
+kind = "side_by_side"
+[[roughness.parts.parts]]
+kind = "pothole"
+depth = 0.04
+width = 0.5
+edge = 0.1
+at = 10.0
+[[roughness.parts.parts]]
+kind = "bump"
+height = 0.01
+width = 1.0
+at = 5.0
+"""
+
+
+def test_roads_made_of_roads():
+    made = road(PARTS)
+    left, right = (made.profile.along(path) for path in (0, 1))
+    rough = mf.realise(mf.IsoRoad.of_class("B"), seed=[1, 2], **PLACE)
+    assert left(10.25) - rough.along(0)(10.25) == pytest.approx(-0.04, abs=1e-6)
+    assert right(10.25) - rough.along(1)(10.25) == pytest.approx(0.0, abs=1e-6)
+    assert right(5.5) - rough.along(1)(5.5) == pytest.approx(0.01, abs=1e-6)
+    assert made.description.count(";") == 2
+    assert made.spectrum is None
+    with pytest.warns(mf.ValidityWarning, match="would lift off the road"):
+        result = parse_scenario(CAR + "[roughness]\n" + PARTS).run()
+    assert "pothole" in result.attrs["road"]
+    # The left wheels fall into the hole, the front one first: 1.4 m ahead, and 2.87 m behind it the rear one.
+    lowest = result.roughness.values.argmin(axis=0) * 1e-2  # [m]
+    assert lowest[0] == pytest.approx(10.25 - 1.4, abs=0.2)
+    assert lowest[2] - lowest[0] == pytest.approx(2.87, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "message"),
+    [
+        (
+            'kind = "fra_track"\ntrack_class = 9\nstep = 0.5',
+            "track_class",
+            "must be one of 1, 2, 3, 4, 5, 6, got 9",
+        ),
+        ('kind = "fra_track"\nstep = 0.5', "track_class", "or roughness is needed: a class or a number, not both"),
+        ('kind = "fra_track"\ntrack_class = 1\nroughness = 1e-6', "track_class", "not both"),
+        ('kind = "german_track"\nroad_class = "low"', "road_class", "did you mean 'track_class'?"),
+        ('kind = "sncf_track"\ntrack_class = "good"\nstep = 2.0', "step", "half of the shortest wave"),
+        (
+            'kind = "iso_road"\nroad_class = "A"\nacross = [0.7, "x"]',
+            "across",
+            "must be an array of numbers [m], got [0.7, 'x']",
+        ),
+        (
+            'kind = "iso_road"\nroad_class = "A"\nacross = [0.7, -0.7]\nseed = [1, 2]',
+            "seed",
+            "one whole number where",
+        ),
+        ('kind = "fra_track"\ntrack_class = 1\nstep = 0.5\nacross = [0.7, -0.7]', "coherence", "is needed"),
+        ('kind = "iso_road"\nroad_class = "A"\ncoherence = 0.5', "coherence", "must be a table"),
+        (
+            'kind = "iso_road"\nroad_class = "A"\nacross = [0, 1]\ncoherence = {kind = "exponential_coherense"}',
+            "coherence.kind",
+            "did you mean 'exponential_coherence'?",
+        ),
+        ('kind = "laplace_road"\nkurtosis = 6.0\nsegment = 1.0', "spectrum", "is missing"),
+        (
+            'kind = "laplace_road"\nkurtosis = 2\nsegment = 1\nspectrum = {kind = "iso_road", roughness = 1e-6}',
+            "kurtosis",
+            "must be above 3",
+        ),
+        ('kind = "superposed"', "parts", "is missing"),
+        ('kind = "superposed"\nparts = []', "parts", "must be one or more tables"),
+        (PARTS.replace("depth = 0.04", "depth = 0"), "parts[1].parts[0].depth", "must not be zero"),
+        (PARTS.replace("edge = 0.1", "edges = 0.1"), "parts[1].parts[0].edge", "is missing"),
+        (PARTS.replace("seed = [1, 2]", "seed = [1, 2, 3]"), "profiles", "same number of paths, got 2 and 3"),
+        (
+            'kind = "pothole"\ndepth = 0.1\nwidth = 1.0\nedge = 0.1\nat = 1.0\nlength = 9.0',
+            "length",
+            "not known here",
+        ),
+        (
+            'kind = "polygon"\nradius = 0.5\norders = 3\namplitudes = [1.0]',
+            "orders",
+            "must be one or more whole numbers of at least 1, got 3",
+        ),
+    ],
+)
+def test_impossible_roads(text, name, message):
+    assert message in faults(text)[f"roughness.{name}"]
+
+
+def test_keys_are_the_keywords_of_python():
+    """All but the length and the start, which follow from the journey."""
+    for kind, make in ROADS.items():
+        parameters = inspect.signature(make).parameters
+        assert "interval" in parameters, kind
+        assert not {"length", "start", "given"} & parameters.keys(), kind
