@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 SCENARIO := out/demo.toml
 
-.PHONY: demo paper test bench accuracy faults lint format clean
+.PHONY: demo paper test bench scale random fuzz accuracy faults lint format clean
 
 demo: $(READY)
 	@mkdir -p out
@@ -30,6 +30,19 @@ format: $(READY)
 
 bench: $(READY)
 	$(BIN)/python -m benchmarks.bench
+
+# A profile of 500 km and a train of sixteen coaches over ten kilometres: time and memory.
+scale: $(READY)
+	$(BIN)/python -m benchmarks.profiles
+	$(BIN)/python -m benchmarks.train
+
+# Closed form against four hundred realisations.
+random: $(READY)
+	$(BIN)/python -m benchmarks.random_roads
+
+# Thousands of damaged files for every reader of profiles.
+fuzz: $(READY)
+	$(BIN)/python -m tests.fuzz_readers
 
 accuracy: $(READY)
 	$(BIN)/python -m benchmarks.accuracy

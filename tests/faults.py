@@ -147,7 +147,7 @@ FAULTS = [
     Fault("footprint twice as long", "vehicles/contact.py", "half = 0.5 *", "half = 1.0 *"),
     Fault("cams twice as far apart", "vehicles/contact.py", "0.5 * self.cams", "1.0 * self.cams"),
     Fault("enveloping left out", "simulation.py", "if contact.envelops]", "if False]"),
-    Fault("stability: the arc left out", "stability.py", "if not np.isinf(vehicle.springs).any():", "if True:"),
+    Fault("stability: the arc left out", "stability.py", "if not rigid:", "if True:"),
     Fault("unstable taken for stable", "stability.py", "round(-float(turned)", "round(float(turned)"),
     Fault("stability not looked at", "stability.py", "    if growing:\n", "    if False:\n"),
     # Vehicle.

@@ -36,6 +36,17 @@ def test_nothing_is_left_to_be_filled_in():
     assert not [file.name for file in texts if re.search(r"@@|TODO|FIXME|XXX", file.read_text(encoding="utf-8"))]
 
 
+def test_tables_of_the_documentation_stand_line_by_line():
+    """A table that was wrapped like prose is none."""
+    for file in [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]:
+        lines = file.read_text(encoding="utf-8").replace("\\|", "").splitlines()
+        for above, line, below in zip(lines, lines[1:], lines[2:], strict=False):
+            if "|---" in line:
+                assert re.fullmatch(r"\|(-+:?\|)+", line), f"{file.name}: {line}"
+                columns = line.count("|")
+                assert above.count("|") == below.count("|") == columns, f"{file.name}: {above}"
+
+
 def test_half_truck_example():
     found = loaded("half_truck").dynamic_load_coefficients()
     assert list(found) == [10.0, 15.0, 20.0]

@@ -261,7 +261,7 @@ def test_a_scenario_builds_what_python_builds():
             "must be one of the bodies",
         ),
         ("train", "count = 3", "count = 3.5", "vehicle.count", "must be a whole number of at least 1, got 3.5"),
-        ("wheelset", "1.4e9", "-1.4e9", "vehicle.stiffness", "must be positive"),
+        ("wheelset", "1.4e9", "-1.4e9", "vehicle.contact_stiffness", "must be positive"),
     ],
 )
 def test_faults_are_found_where_they_are(kind, old, new, name, message):

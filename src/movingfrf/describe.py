@@ -129,10 +129,17 @@ def _vibrations(vehicle: Vehicle) -> list[tuple[str, str]]:
     return [
         (
             f"{group[0].frequency:.3f} Hz" + (f" ({len(group)} times)" if len(group) > 1 else ""),
-            f"{100 * group[0].damping_ratio:.1f} % damping: {group[0].description}",
+            f"{100 * group[0].damping_ratio:.1f} % damping: {_alike(group)}",
         )
         for group in groups
     ]
+
+
+def _alike(group: Sequence[Mode]) -> str:
+    """Describe vibrations of one frequency: two in full, of more the first."""
+    return (
+        "; ".join(mode.description for mode in group) if len(group) <= 2 else f"{group[0].description}, and alike"
+    )
 
 
 def _roughness(profile: Profile, description: str) -> list[tuple[str, str]]:

@@ -114,6 +114,11 @@ def load(file: Path) -> xr.Dataset:
             result: xr.Dataset = opened.load()
     except OSError:
         raise ValueError(f"{file}: is not a netCDF file, or a damaged one") from None
+    if "contact_force_density" in result:
+        raise ValueError(
+            f"{file}: holds the response to a random road, which `movingfrf random` has measured already, see its "
+            "summary.json; `movingfrf measure` takes histories, as `movingfrf run` writes them"
+        )
     if "movingfrf" not in result.attrs or "deflection" not in result:
         raise ValueError(f"{file}: is no result of movingfrf")
     return result

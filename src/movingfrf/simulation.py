@@ -21,7 +21,7 @@ from movingfrf.schema import COUPLED, LOADED, labelled
 from movingfrf.spectral import SpectralGrid
 from movingfrf.stability import along_the_axis, require_stable
 from movingfrf.truncation import bands, first_negligible, influence, middles, truncation_error
-from movingfrf.vehicles.base import Vehicle
+from movingfrf.vehicles.base import Vehicle, require_vehicle
 from movingfrf.version import VERSION
 
 if TYPE_CHECKING:
@@ -114,6 +114,7 @@ def simulate(
     {'time': 2000, 'contact': 1, 'dof': 2}
     """
     require_guideway(guideway)
+    require_vehicle(vehicle)
     journey = Journey(
         speed=speed, duration=duration, start=start, time_step=time_step, truncation=truncation, blend=blend
     )

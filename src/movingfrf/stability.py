@@ -59,8 +59,10 @@ def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
     SolveError
         If the vehicle's natural frequencies lie too far apart for floating-point numbers.
     """
-    poles = vehicle.poles
+    poles, rigid = vehicle.poles, bool(np.isinf(vehicle.springs).any())
     slowest, fastest = _extent(poles)
+    # A wheel that follows the road vibrates on it, faster than anything above it might.
+    fastest = max(fastest, NO_POLES[1]) if rigid else fastest
     if not slowest > WIDEST * fastest:
         raise SolveError(
             f"the vehicle's natural frequencies, from {slowest / (2 * np.pi):.3g} to "
@@ -72,7 +74,7 @@ def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
     if path.size % 2 == 0:
         path = np.append(path, 2 * highest)
     along = path * (1 - 1j * BELOW_AXIS)
-    if not np.isinf(vehicle.springs).any():
+    if not rigid:
         return along
     return np.concatenate([along, path[-1] * np.exp(-0.5j * np.pi * np.arange(1, ON_ARC + 1) / ON_ARC)])
 

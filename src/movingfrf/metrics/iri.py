@@ -155,7 +155,7 @@ def _segments(
     measure: Callable[[FloatArray], FloatArray],
 ) -> FloatArray:
     """Mean of a measure of the suspension's slope (ż_s − ż_u)/V over each segment, shape (segment, path)."""
-    step, length = _even_step(profile.stations), float(np.ptp(profile.stations))
+    step, length = profile.even_step(UNEVEN) or 0.0, float(np.ptp(profile.stations))
     with checking() as check:
         average = check.not_negative("average", average, "m")
         weights = _weights(average / step) if step and average >= 0 else np.ones(1)
@@ -242,10 +242,3 @@ def _weights(window: float) -> FloatArray:
     fraction = (whole.size * missing - float((whole**2).sum())) / (2 * ((inside + 1) ** 2 - missing))
     weights = np.array([fraction, *np.ones(whole.size), fraction])
     return weights / weights.sum()
-
-
-def _even_step(stations: FloatArray) -> float:
-    """Step of even stations [m]; 0 for uneven ones."""
-    step = float(np.ptp(stations)) / (len(stations) - 1)
-    apart = np.abs(stations - stations[0] - step * np.arange(len(stations))).max()
-    return step if apart <= UNEVEN * step else 0.0

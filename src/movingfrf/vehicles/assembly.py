@@ -157,8 +157,8 @@ class Hinge:
     def __post_init__(self) -> None:
         """Check the parameters."""
         with checking() as check:
-            check.text("first", self.first)
-            check.text("second", self.second)
+            if check.text("first", self.first) == check.text("second", self.second):
+                check.refuse("second", f"must be another body than the first, got {self.second!r} for both")
             check.finite("position", self.position, "m")
 
 

@@ -9,7 +9,7 @@ from typing import NotRequired, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import Checks, ComplexArray, FloatArray, NumberArray, checking
+from movingfrf._checks import Checks, ComplexArray, FloatArray, NumberArray, checking, shown
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.dynamics import Dynamics, Matrices, held, parts, split
 
@@ -207,6 +207,24 @@ class Vehicle:
         return held(Matrices(stiffness, damping, mass), contact_map, self.springs, self.dashpots)
 
 
+def require_vehicle(vehicle: object) -> None:
+    """Refuse what is no vehicle.
+
+    Parameters
+    ----------
+    vehicle : object
+        What was given.
+
+    Raises
+    ------
+    ValueError
+        If it is no `Vehicle`.
+    """
+    with checking() as check:
+        if not isinstance(vehicle, Vehicle):
+            check.refuse("vehicle", f"must be a Vehicle, got {shown(vehicle)}")
+
+
 def _names(check: Checks, names: Sequence[str]) -> tuple[str, ...]:
     listed = check.listed("dof_names", names, str)
     if len(set(listed)) < len(listed):
@@ -253,11 +271,18 @@ def _check_held(check: Checks, vehicle: Vehicle) -> None:
         )
         return
     stiffness = motion.free.T @ vehicle.held_stiffness @ motion.free
+    if not stiffness.size:
+        return
     diagonal = np.sqrt(np.diag(stiffness))
-    if not (diagonal > 0).all() or (
-        stiffness.size and np.linalg.eigvalsh(stiffness / np.outer(diagonal, diagonal)).min() < 1e-12
-    ):
-        check.refuse("contacts", "must hold the vehicle up: some motion of it meets no stiffness at all")
+    diagonal[diagonal == 0] = 1.0
+    values, vectors = np.linalg.eigh(stiffness / np.outer(diagonal, diagonal))
+    if values[0] < 1e-12:
+        loose = np.abs(vectors[:, 0] / diagonal)
+        names = [vehicle.dof_names[motion.kept[n]] for n in np.flatnonzero(loose > 0.1 * loose.max())]
+        check.refuse(
+            "contacts",
+            f"must hold the vehicle up, but a motion of {', '.join(names)} meets no stiffness at all",
+        )
 
 
 def _check_carried(check: Checks, vehicle: Vehicle) -> None:

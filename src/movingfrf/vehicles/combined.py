@@ -184,6 +184,8 @@ def seated(
         if check.not_negative("seat_mass", seat_mass, "kg"):
             check.positive("seat_stiffness", seat_stiffness, "N/m")
             check.not_negative("seat_damping", seat_damping, "N s/m")
+        elif seat_stiffness or seat_damping:
+            check.refuse("seat_mass", "must be positive for a seat with a stiffness or damping of its own [kg]")
     with checking() as check:
         floor = _floor(vehicle, mount, check)
     dofs = len(vehicle.dof_names)

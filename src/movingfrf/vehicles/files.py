@@ -24,7 +24,7 @@ PER_CONTACT = {
     "footprint": "footprint",
     "cams": "cams",
 }
-OPTIONAL = (*PER_CONTACT, "vertical", "dof_names")
+OPTIONAL = (*PER_CONTACT, "vertical", "dof_names", "contact_name")
 
 # What a file of this kind may weigh at most [bytes]: a vehicle of a thousand degrees of freedom.
 LARGEST_FILE = 2**28
@@ -35,8 +35,8 @@ def read_vehicle(file: str | Path) -> Vehicle:
 
     The file holds `mass`, `damping`, `stiffness` (dof, dof), `contact_map` (contact, dof), and per contact
     `position` [m], `contact_stiffness` [N/m] (`inf`: rigid) and, where wanted, `contact_damping` [N s/m], `path`
-    (counted from 0), `across` [m], `footprint` [m], `cams` [m]. Optional: `vertical` (dof), else 1 for every degree
-    of freedom; `dof_names`, else `dof_1`, `dof_2` …
+    (counted from 0), `across` [m], `footprint` [m], `cams` [m], `contact_name`.
+    Optional: `vertical` (dof), else 1 for every degree of freedom; `dof_names`, else `dof_1`, `dof_2` …
 
     Parameters
     ----------
@@ -97,13 +97,17 @@ def write_vehicle(vehicle: Vehicle, file: str | Path) -> None:
         "contact_stiffness": vehicle.springs,
         **{key: np.array([getattr(one, name) for one in vehicle.contacts]) for key, name in PER_CONTACT.items()},
         "vertical": np.asarray(vehicle.vertical),
+        "dof_names": np.array(vehicle.dof_names),
+        "contact_name": np.array([one.name for one in vehicle.contacts]),
     }
     if path.suffix.lower() == ".npz":
-        np.savez(path, **arrays, dof_names=np.array(vehicle.dof_names))
+        np.savez(path, **arrays)
     elif path.suffix.lower() == ".mat":
         from scipy.io import savemat
 
-        savemat(path, arrays | {"dof_names": np.array(vehicle.dof_names, object)}, oned_as="column")
+        # Texts become cells.
+        cells = {name: array.astype(object) for name, array in arrays.items() if array.dtype.kind == "U"}
+        savemat(path, arrays | cells, appendmat=False, oned_as="column")
     else:
         raise ValueError(f"{path}: a vehicle is written to .mat or .npz, not to {path.suffix or 'no ending'}")
 
@@ -125,23 +129,31 @@ def _filled(arrays: Mapping[str, Any]) -> Vehicle:
             if name in arrays
         }
         paths = columns.get("path", np.zeros(contacts))
-        if (paths % 1).any():
+        if not np.isfinite(paths).all() or (paths % 1).any():
             check.refuse("path", "must be whole numbers, counted from 0")
         vertical = _row(check, "vertical", arrays.get("vertical", np.ones(dofs)), dofs)
-        names = [str(name) for name in arrays.get("dof_names", [f"dof_{n}" for n in range(1, dofs + 1)])]
+        names = _texts(check, "dof_names", arrays.get("dof_names", [f"dof_{n}" for n in range(1, dofs + 1)]))
+        called = _texts(check, "contact_name", arrays.get("contact_name", [""] * contacts))
+        if len(called) != contacts:
+            check.refuse("contact_name", f"must be {contacts} texts, got {len(called)}")
     columns = {PER_CONTACT.get(name, name.removeprefix("contact_")): column for name, column in columns.items()}
     listed = []
     for number in range(contacts):
         values: dict[str, Any] = {name: float(column[number]) for name, column in columns.items()}
-        listed.append(Contact(**values | {"path": int(paths[number])}))
+        listed.append(Contact(**values | {"path": int(paths[number]), "name": called[number]}))
     return Vehicle(**matrices, contacts=listed, vertical=vertical, dof_names=names)
+
+
+def _texts(check: Checks, name: str, value: Any) -> list[str]:
+    """Texts of a list or an array."""
+    return list(check.listed(name, value.tolist() if isinstance(value, np.ndarray) else value, str))
 
 
 def _table(check: Checks, name: str, value: Any) -> np.ndarray:
     try:
-        table = np.atleast_2d(np.asarray(value, float))
-    except (TypeError, ValueError):
-        check.refuse(name, "must be a matrix of numbers")
+        table = np.atleast_2d(_real(value))
+    except (TypeError, ValueError) as error:
+        check.refuse(name, f"must be a matrix of real numbers: {error}")
         return np.zeros((1, 1))
     if table.ndim != 2 or not table.size:
         check.refuse(name, f"must be a matrix, got an array of shape {table.shape}")
@@ -149,12 +161,21 @@ def _table(check: Checks, name: str, value: Any) -> np.ndarray:
     return table
 
 
+def _real(value: Any) -> np.ndarray:
+    """Real numbers; a loss factor as an imaginary part is none."""
+    array = np.asarray(value)
+    if array.dtype.kind == "c":
+        raise ValueError("complex ones, as for hysteretic damping, are not supported")
+    return array.astype(float)
+
+
 def _row(check: Checks, name: str, value: Any, count: int) -> np.ndarray:
     """Numbers of a row or a column."""
     try:
-        row = np.asarray(value, float).ravel()
-    except (TypeError, ValueError):
-        row = np.empty(0)
+        row = _real(value).ravel()
+    except (TypeError, ValueError) as error:
+        check.refuse(name, f"must be real numbers: {error}")
+        return np.ones(count)
     if row.size != count:
         check.refuse(name, f"must be {count} numbers, got {row.size}")
         return np.ones(count)
@@ -178,6 +199,10 @@ def _read_mat(path: Path) -> dict[str, Any]:
 def _read_npz(path: Path) -> dict[str, Any]:
     try:
         # NumPy leaves a file open that it opened itself and could not read.
+        with path.open("rb") as file, zipfile.ZipFile(file) as archive:
+            needed = sum(entry.file_size for entry in archive.infolist())
+        if needed > LARGEST_FILE:
+            raise ValueError(f"it unpacks to {needed / 2**20:.4g} MiB, too much for a vehicle")
         with path.open("rb") as file, np.load(file, allow_pickle=False) as found:
             return {name: found[name] for name in found.files}
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError, MemoryError) as error:

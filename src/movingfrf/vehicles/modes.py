@@ -20,7 +20,7 @@ class Mode(NamedTuple):
 
     pole: complex  # [rad/s]
     shape: ComplexArray  # (dof,), its largest entry 1
-    share: FloatArray  # (dof,) M_jj |q_j|², their sum 1: the kinetic energy where the mass matrix is diagonal
+    share: FloatArray  # (dof,) of the kinetic energy, their sum 1; see `vehicle_modes`
     description: str
 
     @property
@@ -36,6 +36,9 @@ class Mode(NamedTuple):
 
 def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
     """Vibrations of a vehicle on a rigid road, with what moves in each.
+
+    A degree of freedom has the share |q_j|²/(M⁻¹)_jj, its kinetic energy where the mass matrix is diagonal. Where
+    it is not, as behind a hinge, 1/(M⁻¹)_jj is its mass when all others are free to move.
 
     Parameters
     ----------
@@ -55,7 +58,7 @@ def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
     >>> [mode.description for mode in vehicle_modes(car)]
     ['body 100 %', 'wheel 98 %']
     """
-    mass, found = vehicle.matrices[0], []
+    mobility, found = np.diag(np.linalg.inv(vehicle.matrices[0])), []
     for part in vehicle.dynamics().parts:
         if not len(part.own.constant):
             continue
@@ -64,9 +67,9 @@ def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
         for pole, shape in zip(poles.astype(complex), shapes.T, strict=True):
             if pole.imag < 0:
                 continue
-            whole = np.zeros(len(mass), complex)
+            whole = np.zeros(len(mobility), complex)
             whole[part.dofs] = shape / shape[np.abs(shape).argmax()]
-            share = np.diag(mass) * np.abs(whole) ** 2
+            share = np.abs(whole) ** 2 / mobility
             share /= share.sum()
             found.append(Mode(complex(pole), whole, share, _described(vehicle.dof_names, share)))
     return sorted(found, key=lambda mode: abs(mode.pole))

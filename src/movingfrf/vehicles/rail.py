@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from movingfrf._checks import checking
+from movingfrf._checks import Checks, checking
 from movingfrf.vehicles.assembly import Body, Suspension, assemble
 from movingfrf.vehicles.base import Vehicle
 from movingfrf.vehicles.contact import Contact
@@ -78,6 +78,9 @@ def wheelset(*, mass: float, contact_stiffness: float = np.inf, contact_damping:
     >>> wheelset(mass=1800.0).static_loads.tolist()
     [17658.0]
     """
+    with checking() as check:
+        check.positive("mass", mass, "kg")
+        _check_contact(check, contact_stiffness, contact_damping)
     return assemble(
         bodies=[Body(mass=mass, name="wheelset")],
         contacts=[_contact(0.0, contact_stiffness, contact_damping, 1)],
@@ -134,10 +137,18 @@ def bogie(
         If a mass, stiffness or distance is not positive, or a damping is negative.
     """
     with checking() as check:
+        check.positive("frame_mass", frame_mass, "kg")
+        check.positive("frame_pitch_inertia", frame_pitch_inertia, "kg m²")
+        check.positive("wheelset_mass", wheelset_mass, "kg")
         check.positive("primary_stiffness", primary_stiffness, "N/m")
+        check.not_negative("primary_damping", primary_damping, "N s/m")
         half = 0.5 * check.positive("axle_spacing", axle_spacing, "m")
         if check.not_negative("body_mass", body_mass, "kg"):
             check.positive("secondary_stiffness", secondary_stiffness, "N/m")
+            check.not_negative("secondary_damping", secondary_damping, "N s/m")
+        elif secondary_stiffness or secondary_damping:
+            check.refuse("body_mass", "must be positive above a secondary suspension [kg]")
+        _check_contact(check, contact_stiffness, contact_damping)
     places = {"wheelset_1": half, "wheelset_2": -half}
     carried = [Body(mass=body_mass, name="body")] if body_mass else []
     above = (
@@ -222,8 +233,16 @@ def carriage(
     [10.78, 8.22, -8.22, -10.78]
     """
     with checking() as check:
+        check.positive("body_mass", body_mass, "kg")
+        check.positive("body_pitch_inertia", body_pitch_inertia, "kg m²")
+        check.positive("bogie_mass", bogie_mass, "kg")
+        check.positive("bogie_pitch_inertia", bogie_pitch_inertia, "kg m²")
+        check.positive("wheelset_mass", wheelset_mass, "kg")
         check.positive("primary_stiffness", primary_stiffness, "N/m")
+        check.not_negative("primary_damping", primary_damping, "N s/m")
         check.positive("secondary_stiffness", secondary_stiffness, "N/m")
+        check.not_negative("secondary_damping", secondary_damping, "N s/m")
+        _check_contact(check, contact_stiffness, contact_damping)
         apart = check.positive("bogie_spacing", bogie_spacing, "m")
         wheels = check.positive("axle_spacing", axle_spacing, "m")
         if not check.faults and wheels >= apart:
@@ -258,6 +277,12 @@ def carriage(
         contacts=[_contact(at, contact_stiffness, contact_damping, n) for n, at in enumerate(places, start=1)],
         under=names,
     )
+
+
+def _check_contact(check: Checks, stiffness: float, damping: float) -> None:
+    stiffness = check.positive_or_infinite("contact_stiffness", stiffness, "N/m")
+    if check.not_negative("contact_damping", damping, "N s/m") and stiffness == np.inf:
+        check.refuse("contact_damping", f"must be 0 at a rigid contact, got {damping!r} N s/m")
 
 
 def _contact(position: float, stiffness: float, damping: float, number: int) -> Contact:

@@ -305,6 +305,9 @@ def _corners(units: Sequence[Unit], names: Sequence[str], sides: tuple[float, fl
 
 def _unit_names(check: Checks, units: Sequence[Unit], rolls: bool) -> list[str]:
     units = check.listed("units", units, Unit)
+    places = [place for unit in units for axle in unit.axles for place in axle.positions]
+    if places != sorted(places, reverse=True):
+        check.refuse("units", f"must have their axles in order from the front, got them at {places} m")
     for n, unit in enumerate(units):
         if rolls and unit.roll_inertia is None:
             check.refuse(f"units[{n}].roll_inertia", "is needed for left and right wheels [kg m²]")
