@@ -630,6 +630,22 @@ FAULTS = [
         "- 0.5 * exceeded[..., 0]",
         "+ 50 * exceeded[..., 0]",
     ),
+    Fault("coherence of any shape", "random_vibration.py", "if shared.shape != shape:", "if False:"),
+    Fault(
+        "path unlike itself",
+        "random_vibration.py",
+        "axis1=1, axis2=2) - 1) > SEMI",
+        "axis1=1, axis2=2) - 1) > 1e9 + SEMI",
+    ),
+    Fault(
+        "lopsided coherence",
+        "random_vibration.py",
+        "shared.swapaxes(1, 2)) > SEMI",
+        "shared.swapaxes(1, 2)) > 9 + SEMI",
+    ),
+    Fault("damping always blamed", "random_vibration.py", "NEXT_TO_NONE = 1e-9", "NEXT_TO_NONE = 1e9"),
+    Fault("history taken for a spectrum", "random_measures.py", '"contact_force_density" not in', '"" in'),
+    Fault("threads that wait", "transfers.py", "with unthreaded(contacts):", "with unthreaded(1):"),
     Fault("wide trapezoids", "random_measures.py", "(0.5 * (gaps[1:]", "(1.0 * (gaps[1:]"),
     Fault("coarse panels", "quadrature.py", "UNRESOLVED = 1e-3", "UNRESOLVED = 1e3"),
     Fault("panels that overlap", "quadrature.py", "= low[~rough], high", "= low[~rough] - 0.01, high"),
@@ -670,8 +686,8 @@ FAULTS = [
     Fault(
         "dose of squares",
         "metrics/comfort.py",
-        "** 4, axis=0) * time_step) ** 0.25",
-        "** 2, axis=0) * time_step) ** 0.25",
+        "**4, axis=0) * time_step) ** 0.25",
+        "**2, axis=0) * time_step) ** 0.25",
     ),
     Fault(
         "running rms of a mean",
@@ -704,7 +720,10 @@ FAULTS = [
         "for pairs in (closed,)",
     ),
     Fault(
-        "variance for deviation", "metrics/fatigue.py", "variance ** (slope / 2) / life", "variance**slope / life"
+        "variance for deviation",
+        "metrics/fatigue.py",
+        "np.exp(0.5 * slope * np.log(variance)",
+        "np.exp(slope * np.log(variance)",
     ),
     Fault("falling through a level", "metrics/fatigue.py", "np.diff(history) > 0", "np.diff(history) < 0"),
     Fault(
@@ -719,6 +738,16 @@ FAULTS = [
         "metrics/guideway.py",
         "np.abs(kappa.imag).min(axis=0)",
         "np.abs(kappa.imag).max(axis=0)",
+    ),
+    Fault("damage beyond a Gaussian process", "metrics/fatigue.py", "if not 0 < share <= 1 + BOUND:", "if False:"),
+    Fault("damage of a negative life", "metrics/fatigue.py", "if not 0 < share <= 1", "if not share <= 1"),
+    Fault("load that hangs divides", "metrics/loads.py", "where=load > 0)", "where=load != 0)"),
+    Fault("load that hangs wears", "metrics/loads.py", "max(static[contact], 0.0)", "static[contact]"),
+    Fault("points beyond memory", "metrics/loads.py", "(last - first) / spacing * (BYTES", "0 * (BYTES"),
+    Fault("window longer than the road", "metrics/iri.py", "elif shortest > length:", "elif False:"),
+    Fault("feet felt like the seat", "metrics/comfort.py", "[SEATED[name] for name in rms]", "1.0"),
+    Fault(
+        "histories mixed", "metrics/comfort.py", "np.reshape(values, (shape[0], -1))", "np.reshape(values, (-1, 1))"
     ),
     # Profiles from files.
     Fault("units not converted", "roughness/formats/base.py", "else values * scale", "else values"),

@@ -11,7 +11,7 @@ import xarray as xr
 import movingfrf as mf
 from movingfrf.cli import main
 from movingfrf.random_measures import random_measures
-from movingfrf.random_report import render
+from movingfrf.random_report import paths, render
 from tests.helpers import DAMPED, FULL_TRUCK
 from tests.test_scenario import LOADS, TEMPLATE
 
@@ -30,7 +30,14 @@ def test_three_files_that_say_the_same(tmp_path, capsys):
     assert main([*command, "--output", str(named)]) == 0
     assert main(command) == 0
     told = capsys.readouterr().out
-    for words in ("contact 0 force", "coefficient", "bounce acceleration", "pitch acceleration", "Findings: none"):
+    for words in (
+        "; one road under all wheels",
+        "contact 0 force",
+        "coefficient",
+        "bounce acceleration",
+        "pitch acceleration",
+        "Findings: none",
+    ):
         assert words in told
     assert sorted(file.name for file in named.iterdir()) == ["random.nc", "report.html", "summary.json"]
     for file in named.iterdir():
@@ -67,6 +74,23 @@ def test_a_value_that_is_refused(tmp_path, capsys):
     assert main(["random", str(scenario), "--exposure", "-1"]) == 2
     assert "exposure must be positive" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+@pytest.mark.parametrize(
+    ("coherence", "words"),
+    [
+        (1, "one road under all wheels"),
+        (0.0, "paths without anything in common"),
+        (0.5, "coherence 0.5"),
+        (mf.IsotropicCoherence(), "coherence IsotropicCoherence(waviness=2.0)"),
+    ],
+)
+def test_what_the_paths_have_in_common(coherence, words):
+    spectrum = mf.IsoRoad.of_class("A", band=(0.1, 1.0))
+    car = mf.full_car(**FULL_TRUCK)
+    result = mf.random_response(mf.RigidGuideway(), car, spectrum, speed=10.0, coherence=coherence)
+    assert paths(result) == words
 
 
 @pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")

@@ -112,6 +112,8 @@ _WHERE = {
     "running_rms": "metrics.comfort",
     "vibration_dose": "metrics.comfort",
     "vibration_total": "metrics.comfort",
+    "seated_total": "metrics.comfort",
+    "whole_body_vibration": "metrics.comfort",
     "comfort": "metrics.comfort",
     "comfort_reactions": "metrics.comfort",
     "dynamic_load_coefficient": "metrics.loads",

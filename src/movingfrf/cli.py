@@ -243,7 +243,7 @@ def random(
         stages.report("loading", 0.0)
         from movingfrf.output import replacing, save, summary
         from movingfrf.random_measures import random_measures
-        from movingfrf.random_report import render
+        from movingfrf.random_report import paths, render
         from movingfrf.random_vibration import random_response
         from movingfrf.scenario import read_scenario
 
@@ -277,7 +277,7 @@ def random(
             title = f"{scenario.name}: random road"
             page = render(result, found, title=title, scenario=scenario.text)
             (temporary / "report.html").write_text(page, encoding="utf-8")
-    console.print(f"Spectrum: {result.attrs['spectrum']}; paths: {result.attrs['coherence']}\n", soft_wrap=True)
+    console.print(f"Spectrum: {result.attrs['spectrum']}; {paths(result)}\n", soft_wrap=True)
     _print_result(console, result, found)
     for name in ("report.html", "random.nc", "summary.json"):
         console.print(f"wrote {folder / name}", soft_wrap=True)

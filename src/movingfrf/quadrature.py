@@ -21,6 +21,20 @@ UNRESOLVED = 1e-3
 NARROWEST, MOST_PANELS = 1e-10, 50_000
 
 
+class Unresolved(SolveError):
+    """A density is so sharp that halving does not resolve it.
+
+    Parameters
+    ----------
+    frequency : float
+        Where [Hz].
+    """
+
+    def __init__(self, frequency: float) -> None:
+        self.frequency = frequency
+        super().__init__(f"the spectral densities of the response cannot be resolved near {frequency:.4g} Hz")
+
+
 class Lines(NamedTuple):
     """Densities at frequencies that are at the same time the points of a quadrature."""
 
@@ -65,7 +79,9 @@ def resolved(
     Raises
     ------
     SolveError
-        If a density is not finite, or so sharp that halving does not resolve it.
+        If a density is not finite.
+    Unresolved
+        If it is so sharp that halving does not resolve it.
     """
     at, weight, last = _gauss()
     panels = np.stack([edges[:-1], edges[1:]], axis=1)
@@ -85,11 +101,7 @@ def resolved(
         if not rough.any():
             break
         if (half[rough] < NARROWEST * high[rough]).any() or len(low) > MOST_PANELS:
-            place = low[rough][half[rough].argmin()]
-            raise SolveError(
-                f"the spectral densities of the response cannot be resolved near {place:.4g} Hz: a vibration "
-                "without damping there has no finite root mean square"
-            )
+            raise Unresolved(float(low[rough][half[rough].argmin()]))
         middle = low[rough] + half[rough]
         panels = np.concatenate([np.stack([low[rough], middle], axis=1), np.stack([middle, high[rough]], axis=1)])
         low, high, values = low[~rough], high[~rough], values[~rough]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from movingfrf._checks import checking
+from movingfrf._checks import Checks, checking, shown
 from movingfrf.metrics.basic import CEBON, EISENMANN, Measure
 from movingfrf.metrics.loads import road_stress_factor
 from movingfrf.random_vibration import WEIGHTING_OF
@@ -35,8 +35,8 @@ def spectral_fatigue(
     strength : float
         The curve's C: cycles to failure times amplitude to the power of the exponent [unit^m].
     method : str
-        How rainflow cycles are estimated from a spectrum: `dirlik`, `tovo_benasciutti`, `narrow_band` or another
-        method of `movingfrf.metrics.fatigue.spectral_damage`.
+        How rainflow cycles are estimated from a spectrum: `dirlik`, `tovo_benasciutti`, `single_moment` or
+        `narrow_band`; see `spectral_damage`.
 
     Returns
     -------
@@ -46,15 +46,15 @@ def spectral_fatigue(
     Raises
     ------
     ValueError
-        If there is no such quantity or method, or a value is not positive.
-    ImportError
-        If the extra `fatigue` is not installed.
+        If the result is none of `random_response`, there is no such quantity or method, a value is not positive,
+        the method does not hold for a density, or the extra `fatigue` is not installed.
     """
     from movingfrf.metrics.fatigue import spectral_damage
 
     with checking() as check:
-        if quantity not in RANDOM_QUANTITIES or f"{quantity}_density" not in result:
-            check.refuse("quantity", f"must be one of {', '.join(RANDOM_QUANTITIES)}, got {quantity!r}")
+        _check_random(check, result)
+        if not (isinstance(quantity, str) and quantity in RANDOM_QUANTITIES):
+            check.refuse("quantity", f"must be one of {', '.join(RANDOM_QUANTITIES)}, got {shown(quantity)}")
     frequency, density = result.frequency.values, result[f"{quantity}_density"].values
     if "bandwidth" in result.coords:
         # The damage is integrated by trapezoids: so weighted they give the moments of the Gauss points.
@@ -87,7 +87,8 @@ def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[M
     Returns
     -------
     list of Measure
-        Per contact: static force, root mean square and expected peak of the dynamic one [N], its crossing rate
+        Per contact: static force, root mean square and expected peak (its largest value, not the largest
+        magnitude that `measures` calls the dynamic peak) of the dynamic one [N], its crossing rate
         [1/s] and irregularity; of the total load the dynamic load coefficient, road stress factor, expected
         largest value [N], how often [1/s] and for which share of the time it would turn tensile; static, root mean
         square and peak deflection [m] with its crossing rate. Per degree of freedom: root mean square, expected
@@ -96,10 +97,10 @@ def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[M
     Raises
     ------
     ValueError
-        If the slope is not positive.
-    ImportError
-        If a slope is given and the extra `fatigue` is not installed.
+        If the result is none of `random_response`, or the damage for a slope cannot be had; see `spectral_fatigue`.
     """
+    with checking() as check:
+        _check_random(check, result)
     equivalent = None
     if slope is not None:
         equivalent = spectral_fatigue(result, "contact_force", slope=slope).values ** (1 / slope)
@@ -144,3 +145,8 @@ def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[M
             Measure(quantity, f"weighted rms ({weighting})", at.weighted_acceleration.item(), unit, "ISO 2631-1"),
         ]
     return found
+
+
+def _check_random(check: Checks, result: object) -> None:
+    if "contact_force_density" not in getattr(result, "data_vars", ()):
+        check.refuse("result", "must be the response to a random road, from `random_response`")

@@ -64,6 +64,28 @@ def render(result: xr.Dataset, found: Sequence[Measure], *, title: str, scenario
     )
 
 
+def paths(result: xr.Dataset) -> str:
+    """Say what the paths of a random road have in common.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What `random_response` returned.
+
+    Returns
+    -------
+    str
+        A few words, or the model as it was given.
+    """
+    coherence = str(result.attrs["coherence"])
+    words = {
+        "one path": "one path under all contacts",
+        "1.0": "one road under all wheels",
+        "0.0": "paths without anything in common",
+    }
+    return words.get(coherence, f"coherence {coherence}")
+
+
 def _settings(result: xr.Dataset) -> list[Setting]:
     attrs = result.attrs
     speed, critical = attrs["speed"], attrs["critical_speed"]
@@ -81,7 +103,7 @@ def _settings(result: xr.Dataset) -> list[Setting]:
             else "",
         ),
         Setting("Spectrum (SI units)", attrs["spectrum"], wide=True),
-        Setting("Coherence of the paths", attrs["coherence"], wide=True),
+        Setting("Paths", paths(result), wide=True),
         Setting("Road (SI units)", attrs["guideway"], wide=True),
     ]
 
@@ -97,8 +119,8 @@ def _method() -> list[str]:
         "Spectral densities are one-sided, per Hz. Their moments are integrated by Gauss points on panels that "
         "were halved until every density was resolved.",
         "Crossing and peak rates are those of Rice for a Gaussian process. The expected peak is the mean of the "
-        "largest value within the exposure if crossings of a high level are independent; where a response comes in "
-        "bursts (irregularity near 1) it is a few per cent too large.",
+        "largest value within the exposure, on one side of the steady state, if crossings of a high level are "
+        "independent; where a response comes in bursts (irregularity near 1) it is a few per cent too large.",
         "Contact is kept at all times: how often a total contact force would turn negative is part of the tables.",
         "Accelerations are weighted after ISO 2631-1, Wk in m/s² and We in rad/s², whatever the degree of freedom "
         "is; for comfort only those of the body or a seat have a meaning.",

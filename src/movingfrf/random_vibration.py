@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,18 +21,19 @@ from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
 import movingfrf.findings as find
-from movingfrf._checks import Checks, ComplexArray, FloatArray, checking, require_memory
+from movingfrf._checks import Checks, ComplexArray, FloatArray, SolveError, checking, require_memory, shown
 from movingfrf.coupling import System, joined, steady_state
 from movingfrf.findings import Finding
 from movingfrf.guideways.base import Guideway, require_guideway
+from movingfrf.metrics.loads import load_coefficient
 from movingfrf.progress import Progress, silent
-from movingfrf.quadrature import Lines, resolved
+from movingfrf.quadrature import Lines, Unresolved, resolved
 from movingfrf.roughness.coherence import Coherence
 from movingfrf.roughness.spectra import Spectrum
 from movingfrf.schema import RANDOM, RANDOM_QUANTITIES, labelled
 from movingfrf.stability import along_the_axis, require_stable
 from movingfrf.transfers import BYTES_PER_VALUE, coordinates, responses
-from movingfrf.vehicles.base import Vehicle
+from movingfrf.vehicles.base import Vehicle, require_vehicle
 from movingfrf.version import VERSION
 
 if TYPE_CHECKING:
@@ -42,6 +44,9 @@ ROUNDING = 1e-20
 
 # Negative eigenvalues of a matrix of coherences up to this size are rounding.
 SEMIDEFINITE = 1e-9
+
+# Damping ratio below which a resonance is too sharp to be resolved.
+NEXT_TO_NONE = 1e-9
 
 # Powers of the frequency whose integrals the statistics need.
 POWERS = (0, 2, 4)
@@ -87,7 +92,7 @@ class _Road:
             same = np.where(np.eye(len(across), dtype=bool), 1.0, self.coherence)
             shared: FloatArray = np.broadcast_to(same, (spatial_frequency.size, *same.shape))
         else:
-            shared = self.coherence.between(spatial_frequency, across[:, None] - across)
+            shared = _matrices(self.coherence, spatial_frequency, across)
         values, vectors = np.linalg.eigh(shared)
         if values.min() < -SEMIDEFINITE * len(across):
             n = spatial_frequency[values.min(axis=1).argmin()]
@@ -140,9 +145,9 @@ def random_response(
         (contact), all about the steady state: `…_density` (frequency, …), one-sided, per Hz, zero outside the band
         of the spectrum; `…_rms`; `…_crossing_rate`, upcrossings of zero per second, √(m₂/m₀); `…_peak_rate`,
         maxima per second, √(m₄/m₂); `…_irregularity`, their quotient; `…_expected_peak`, the mean of the largest
-        value within the exposure. Also `static_load`, `static_deflection`, `dynamic_load_coefficient`,
-        `lift_off_share` and `lift_off_rate` (contact), and `weighted_acceleration` (dof) after ISO 2631-1.
-        Settings and findings in the attributes.
+        value within the exposure on one side of the steady state, not of the largest magnitude. Also
+        `static_load`, `static_deflection`, `dynamic_load_coefficient`, `lift_off_share` and `lift_off_rate`
+        (contact), and `weighted_acceleration` (dof) after ISO 2631-1. Settings and findings in the attributes.
 
     Raises
     ------
@@ -177,6 +182,7 @@ def random_response(
     0.09
     """
     require_guideway(guideway)
+    require_vehicle(vehicle)
     with checking() as check:
         check.positive("speed", speed, "m/s")
         check.positive("exposure", exposure, "s")
@@ -192,12 +198,7 @@ def random_response(
     require_stable(system, system.sample(along_the_axis(vehicle, speed)))
     densities = _densities(system, _Road(vehicle=vehicle, spectrum=spectrum, coherence=shared, speed=speed))
     progress("spectral densities", 0.0)
-    lines = resolved(
-        densities,
-        _edges(spectrum, speed),
-        powers=POWERS,
-        comparable=np.eye(_outputs(vehicle)) + ROUNDING * _negligible(vehicle),
-    )
+    lines = _resolved(densities, vehicle, _edges(spectrum, speed))
     statistics = _statistics(vehicle, lines, exposure)
     force_rms, crossing = statistics["contact_force_rms"], statistics["contact_force_crossing_rate"]
     lift_off_share, lift_off_rate = _lift_off(steady.load, force_rms, crossing)
@@ -219,9 +220,7 @@ def random_response(
         "static_deflection": steady.deflection,
         **{f"{name}_density": shown[:, part] for name, part in _parts(vehicle).items()},
         **statistics,
-        "dynamic_load_coefficient": np.divide(
-            force_rms, steady.load, out=np.full_like(force_rms, np.inf), where=steady.load > 0
-        ),
+        "dynamic_load_coefficient": load_coefficient(force_rms, steady.load),
         "lift_off_share": lift_off_share,
         "lift_off_rate": lift_off_rate,
         "weighted_acceleration": _weighted(vehicle, lines),
@@ -232,7 +231,7 @@ def random_response(
         "speed": float(speed),
         "exposure": float(exposure),
         "spectrum": repr(spectrum),
-        "coherence": repr(coherence) if coherence is not None else "one path",
+        "coherence": repr(shared) if coherence is not None else "one path",
         "lowest_frequency": float(spectrum.band[0] * speed),
         "highest_frequency": float(spectrum.band[1] * speed),
         "frequencies": lines.frequency.size,
@@ -277,7 +276,9 @@ def peak_factor(crossings: ArrayLike) -> FloatArray:
 
 
 def _check_spectrum(check: Checks, spectrum: object) -> None:
-    if not all(hasattr(spectrum, name) for name in ("band", "density", "variance_below")):
+    if isinstance(spectrum, type):
+        check.refuse("spectrum", f"must be a roughness spectrum, got the class {spectrum.__name__} itself")
+    elif not all(hasattr(spectrum, name) for name in ("band", "density", "variance_below")):
         check.refuse(
             "spectrum", f"must be a roughness spectrum, as IsoRoad is, got an object of {type(spectrum).__name__}"
         )
@@ -293,11 +294,33 @@ def _checked_coherence(check: Checks, coherence: Coherence | float | None, paths
                 "for the same road on all of them, or 0.0 for roads without anything in common",
             )
         return 1.0
-    if hasattr(coherence, "between"):
-        return coherence
-    if check.not_negative("coherence", coherence, "1") > 1:
-        check.refuse("coherence", f"must be at most 1, got {coherence!r}")
-    return float(coherence)
+    if isinstance(coherence, Real):
+        ratio = check.not_negative("coherence", coherence, "1")
+        if ratio > 1:
+            check.refuse("coherence", f"must be at most 1, got {coherence!r}")
+        return ratio
+    if isinstance(coherence, type) or not hasattr(coherence, "between"):
+        check.refuse(
+            "coherence",
+            f"must be a model, as IsotropicCoherence() is, or a number between 0 and 1, got {shown(coherence)}",
+        )
+    return coherence
+
+
+def _matrices(coherence: Coherence, spatial_frequency: FloatArray, across: FloatArray) -> FloatArray:
+    """γ of a model over the paths, (frequency, path, path); one that breaks the contract of models is refused."""
+    shape = (spatial_frequency.size, across.size, across.size)
+    with checking() as check:
+        shared = np.asarray(coherence.between(spatial_frequency, across[:, None] - across))
+        if shared.shape != shape:
+            check.refuse("coherence", f"must return an array (frequency, path, path), {shape}, got {shared.shape}")
+        elif shared.dtype.kind not in "iuf" or not np.isfinite(shared).all():
+            check.refuse("coherence", "must return real, finite numbers: neither path is ahead of the other")
+        elif (np.abs(np.diagonal(shared, axis1=1, axis2=2) - 1) > SEMIDEFINITE).any():
+            check.refuse("coherence", "must be 1 between a path and itself, no distance apart")
+        elif (np.abs(shared - shared.swapaxes(1, 2)) > SEMIDEFINITE).any():
+            check.refuse("coherence", "must be the same from left to right as from right to left")
+    return shared
 
 
 def _parts(vehicle: Vehicle) -> dict[str, slice]:
@@ -324,6 +347,21 @@ def _densities(system: System, road: _Road) -> Callable[[FloatArray], FloatArray
         return np.hstack([force, deflection, motion, omega[:, None] ** 4 * motion, elevation])
 
     return densities
+
+
+def _resolved(densities: Callable[[FloatArray], FloatArray], vehicle: Vehicle, edges: FloatArray) -> Lines:
+    """Frequencies that resolve the densities; where none do, the reason."""
+    comparable = np.eye(_outputs(vehicle)) + ROUNDING * _negligible(vehicle)
+    try:
+        return resolved(densities, edges, powers=POWERS, comparable=comparable)
+    except Unresolved as failure:
+        reason = (
+            "a vibration without damping has no finite root mean square"
+            if vehicle.damping_ratios.min(initial=np.inf) < NEXT_TO_NONE
+            else "no vibration of the vehicle is without damping, so that it may be rounding that varies there; at "
+            f"this speed the band of the road is {edges[0]:.3g} to {edges[-1]:.3g} Hz"
+        )
+        raise SolveError(f"{failure}: {reason}") from None
 
 
 def _edges(spectrum: Spectrum, speed: float) -> FloatArray:

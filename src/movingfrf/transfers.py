@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike
 
 import movingfrf.findings as find
 from movingfrf._checks import ComplexArray, FloatArray, SolveError, checking, require_memory
-from movingfrf.coupling import System, chunk_for, joined, product, solve_contacts
+from movingfrf.coupling import System, chunk_for, joined, product, solve_contacts, unthreaded
 from movingfrf.guideways.base import Guideway, require_guideway
 from movingfrf.schema import TRANSFER, labelled
 from movingfrf.stability import along_the_axis, require_stable
-from movingfrf.vehicles.base import Vehicle
+from movingfrf.vehicles.base import Vehicle, require_vehicle
 from movingfrf.version import VERSION
 
 if TYPE_CHECKING:
@@ -75,6 +75,7 @@ def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: A
     [1.0, 2.46]
     """
     require_guideway(guideway)
+    require_vehicle(vehicle)
     with checking() as check:
         check.positive("speed", speed, "m/s")
         lines = check.array("frequency", frequency, "Hz", (None,))
@@ -136,14 +137,15 @@ def responses(system: System, omega: ComplexArray, roughness: ComplexArray) -> R
     contacts, dofs = len(vehicle.contacts), len(vehicle.dof_names)
     found = Responses(*(np.empty((omega.size, outputs, cases), complex) for outputs in (contacts, contacts, dofs)))
     step = chunk_for(contacts)
-    for first in range(0, omega.size, step):
-        some = slice(first, first + step)
-        _, frf, stiffness = system.sample(omega[some])
-        found.force[some] = solve_contacts(frf, stiffness, roughness[some])
-        found.deflection[some] = product(frf, found.force[some])
-        displacement = found.deflection[some] - roughness[some]
-        for case in range(cases):
-            found.motion[some, :, case] = system.motion(omega[some], displacement[:, :, case])
+    with unthreaded(contacts):
+        for first in range(0, omega.size, step):
+            some = slice(first, first + step)
+            _, frf, stiffness = system.sample(omega[some])
+            found.force[some] = solve_contacts(frf, stiffness, roughness[some])
+            found.deflection[some] = product(frf, found.force[some])
+            displacement = found.deflection[some] - roughness[some]
+            for case in range(cases):
+                found.motion[some, :, case] = system.motion(omega[some], displacement[:, :, case])
     singular = ~np.isfinite(sum(np.abs(part).sum(axis=(1, 2)) for part in found))
     if singular.any():
         raise SolveError(

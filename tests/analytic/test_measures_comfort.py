@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import lsim
 
 import movingfrf as mf
-from movingfrf.metrics.comfort import SEATED, WEIGHTINGS, Comfort, felt
+from movingfrf.metrics.comfort import WEIGHTINGS, Comfort
 
 # Factors × 1000 at nominal third-octave frequencies [Hz] (ISO 2631-1, tables 3 and 4).
 TABLES = {
@@ -107,7 +107,7 @@ def test_measures_of_a_sine():
     step, amplitude, duration = 1e-3, 3.0, 400.0
     time = step * np.arange(round(duration / step))
     # In 400 s the start counts for little: 1 s of it for 1e-3.
-    found = felt(amplitude * np.sin(2 * np.pi * 8 * time), step, "Wk")
+    found = mf.whole_body_vibration(amplitude * np.sin(2 * np.pi * 8 * time), step, "Wk")
     weighted = amplitude * abs(mf.weighting("Wk", 8.0))
     assert found.rms == pytest.approx(weighted / np.sqrt(2), rel=1e-3)
     assert found.vdv == pytest.approx(weighted * (3 * duration / 8) ** 0.25, rel=1e-3)
@@ -130,13 +130,17 @@ def test_running_rms_and_dose_of_a_burst():
     # Before the record there was nothing.
     assert mf.running_rms(np.ones(10), 0.1)[0] == pytest.approx(np.sqrt(0.1))
     assert mf.vibration_dose(values, step) == pytest.approx(32**0.25, rel=1e-12)
+    # Several histories, in any arrangement.
+    grid = values[:, None, None] * np.array([[1.0, 2.0, 0.0]])
+    assert mf.vibration_dose(grid, step) == pytest.approx(32**0.25 * np.array([[1.0, 2.0, 0.0]]))
+    np.testing.assert_allclose(mf.running_rms(grid, step)[:, 0, 1], 2 * running, rtol=0, atol=1e-7)
 
 
 def test_criteria():
     """One shock in a quiet minute exceeds all; a crest factor of 9 alone does not exceed."""
     quiet = 0.01 * np.sin(2 * np.pi * 8 * 1e-3 * np.arange(60_000))
     quiet[30_000:30_050] += 10.0
-    assert felt(quiet, 1e-3).exceeded == ("crest", "MTVV", "VDV")
+    assert mf.whole_body_vibration(quiet, 1e-3).exceeded == ("crest", "MTVV", "VDV")
     steady = Comfort(weighting="Wk", rms=1.0, peak=9.0, mtvv=1.5, vdv=1.75 * 16**0.25, duration=16.0)
     assert steady.exceeded == ()
     assert steady._replace(peak=9.01).exceeded == ("crest",)
@@ -169,14 +173,20 @@ def test_totals():
     """ISO 2631-1, equation (10), with the factors of a seat and of health."""
     assert mf.vibration_total([3.0, 4.0]) == pytest.approx(5.0)
     assert mf.vibration_total([1.0, 1.0, 1.0], [1.4, 1.4, 1.0]) == pytest.approx(np.sqrt(2 * 1.96 + 1))
-    assert [SEATED[f"seat {axis}"][1] for axis in ("x", "y", "z", "roll", "pitch", "yaw")] == [
-        1,
-        1,
-        1,
-        0.63,
-        0.4,
-        0.2,
-    ]
+
+
+def test_total_of_a_seated_person():
+    """ISO 2631-1, 8.2.2.1: each factor by itself, and all of them by the sum of squares."""
+    factors = {
+        "seat": {"x": 1, "y": 1, "z": 1, "roll": 0.63, "pitch": 0.4, "yaw": 0.2},
+        "backrest": {"x": 0.8, "y": 0.5, "z": 0.4},
+        "feet": {"x": 0.25, "y": 0.25, "z": 0.4},
+    }
+    alone = {f"{place} {axis}": k for place, axes in factors.items() for axis, k in axes.items()}
+    assert {axis: mf.seated_total({axis: 2.0}) for axis in alone} == pytest.approx(
+        {a: 2 * k for a, k in alone.items()}
+    )
+    assert mf.seated_total(dict.fromkeys(alone, 1.0)) == pytest.approx(sum(k**2 for k in alone.values()) ** 0.5)
 
 
 def test_comfort_of_a_result():
@@ -211,6 +221,19 @@ def test_comfort_of_a_result():
         (lambda: mf.vibration_dose([1.0], -1.0), "time_step must be positive"),
         (lambda: mf.comfort_reactions(-1.0), "rms must not be negative"),
         (lambda: mf.vibration_total([[1.0]]), "rms must have shape"),
+        (lambda: mf.vibration_total([1.0, 2.0], [1.0, 2.0, 3.0]), r"factors must have shape \(2\), got \(3,\)"),
+        (lambda: mf.weighting(["Wk"], 1.0), r"weighting must be one of Wk, .*, got \['Wk'\]"),
+        (lambda: mf.weighted(3.0, 1e-3), r"acceleration must hold at least one sample, .* got shape \(\)"),
+        (lambda: mf.running_rms(3.0, 1e-3), r"values must hold at least one sample, .* got shape \(\)"),
+        (lambda: mf.running_rms([], 1e-3), r"values must hold at least one sample, .* got shape \(0,\)"),
+        (lambda: mf.running_rms([1.0, np.nan], 1e-3), "values must be finite"),
+        (lambda: mf.vibration_dose([np.nan], 1e-3), "values must be finite"),
+        (lambda: mf.vibration_dose(3.0, 1e-3), "values must hold at least one sample"),
+        (lambda: mf.comfort(None, "body"), "result must be the coupled response of a vehicle"),
+        (lambda: mf.whole_body_vibration([[1.0]], 1e-3), "acceleration must have shape"),
+        (lambda: mf.seated_total({"seat z": 1.0, "nose x": 1.0}), "rms must be of seat x, .*, got 'nose x'"),
+        (lambda: mf.seated_total({"seat z": -1.0}), r"rms\['seat z'\] must not be negative"),
+        (lambda: mf.seated_total([1.0]), "rms must give accelerations by place and axis"),
     ],
 )
 def test_refusals(call, message):

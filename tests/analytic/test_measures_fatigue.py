@@ -93,14 +93,18 @@ def test_narrow_band_in_closed_form(slope):
     """ν₀ (√2 σ)^m Γ(1 + m/2)/C; with other methods within the bandwidth of 2 %."""
     f = np.linspace(9.9, 10.1, 401)
     density = np.full(401, 20.0)
-    m0, m2 = moments(f, density, 0, 2)
-    wanted = np.sqrt(m2 / m0) * (2 * m0) ** (slope / 2) * gamma(1 + slope / 2) / 7.0
+    wanted = narrow_band(f, density, slope) / 7.0
     found = mf.spectral_damage(f, density, slope=slope, strength=7.0, method="narrow_band")
     assert found == pytest.approx(wanted, rel=1e-9)
     for method in METHODS:
         assert mf.spectral_damage(f, density, slope=slope, strength=7.0, method=method) == pytest.approx(
             wanted, rel=0.05
         )
+
+
+def narrow_band(frequency, density, slope) -> float:
+    m0, m2 = moments(frequency, density, 0, 2)
+    return float(np.sqrt(m2 / m0) * (2 * m0) ** (slope / 2) * gamma(1 + slope / 2))
 
 
 def dirlik(frequency, density, slope) -> float:
@@ -149,6 +153,54 @@ def test_spectral_damage_is_that_of_counted_histories(name):
     assert mf.spectral_damage(F, DENSITIES[name], slope=4.0, method="narrow_band") > 0.97 * counted
 
 
+def two_sharp_modes(share):
+    """Two lightly damped modes a decade apart, the high one with so many times the density."""
+    low, high = (1 / ((f**2 - F**2) ** 2 + (0.02 * f * F) ** 2) for f in (3.0, 30.0))
+    return low / low.max() + share * high / high.max()
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("slope", [2.0, 4.0, 10.0])
+def test_no_damage_beyond_what_a_gaussian_process_can_do(method, slope):
+    """Above zero and at most a narrow band's, over irregularities from 0.2 to 1; what is outside is refused."""
+    for share in np.geomspace(1e-4, 10.0, 12):
+        density = two_sharp_modes(share)
+        most = narrow_band(F, density, slope) * (1 + 1e-6)
+        if method == "dirlik" and dirlik(F, density, slope) > most:
+            m0, m2, m4 = moments(F, density, 0, 2, 4)
+            with pytest.raises(ValueError, match=f"irregularity is {m2 / np.sqrt(m0 * m4):.3g}:"):
+                mf.spectral_damage(F, density, slope=slope, method=method)
+        else:
+            assert 0 < mf.spectral_damage(F, density, slope=slope, method=method) <= most
+
+
+def test_a_fit_beyond_its_range_is_refused():
+    """Where Dirlik's formula, integrated here, exceeds a narrow band; the other methods stay below it."""
+    share = next(
+        share
+        for share in np.geomspace(1e-4, 10.0, 60)
+        if dirlik(F, two_sharp_modes(share), 10.0) > 1.01 * narrow_band(F, two_sharp_modes(share), 10.0)
+    )
+    with pytest.raises(ValueError, match="method 'dirlik' does not hold for this density, whose irregularity is 0"):
+        mf.spectral_damage(F, two_sharp_modes(share), slope=10.0)
+    assert mf.spectral_damage(F, two_sharp_modes(share), slope=10.0, method="tovo_benasciutti") > 0
+
+
+def test_negative_damage_is_refused(monkeypatch):
+    """As of a method whose weights turn negative: Zhao and Baker's, whose Rayleigh part does below 0.13."""
+    monkeypatch.setitem(METHODS, "zhao_baker", "ZhaoBaker")
+    density = np.where(F > 0.6, F**-3.0, 0.0)
+    m0, m2, m4 = moments(F, density, 0, 2, 4)
+    assert m2 / np.sqrt(m0 * m4) < 0.13
+    with pytest.raises(ValueError, match=r"method 'zhao_baker' does not hold .* it gives -.* times the damage"):
+        mf.spectral_damage(F, density, slope=4.0, method="zhao_baker")
+
+
+def test_damage_beyond_numbers():
+    with pytest.raises(ValueError, match="strength must be in proportion to the density, got 1 "):
+        mf.spectral_damage(F, np.full(F.size, 1e18), slope=50.0)
+
+
 def test_scales():
     """Damage goes with the amplitude to the power of m, at forces of any size, and with one over the strength."""
     small = mf.spectral_damage(F, DENSITIES["plateau"], slope=12.0)
@@ -168,6 +220,13 @@ def test_scales():
         (lambda: mf.spectral_damage(F, F, slope=4.0, method="miles"), "method must be one of narrow_band, dirlik"),
         (lambda: mf.level_crossings([np.nan], [0.0]), "values must be finite"),
         (lambda: mf.rainflow([[1.0]]), "values must have shape"),
+        (lambda: mf.rainflow([]), "values must hold at least one number"),
+        (lambda: mf.equivalent_amplitude([], slope=3.0, duration=1.0), "values must hold at least one number"),
+        (
+            lambda: mf.spectral_damage(F, F, slope=4.0, method=["dirlik"]),
+            "method must be one of narrow_band, dirlik",
+        ),
+        (lambda: mf.spectral_damage(F, F, slope=51.0), "slope must be at most 50"),
         (lambda: mf.equivalent_amplitude([1.0, 2.0, 1.0], slope=3.0, duration=0.0), "duration must be positive"),
         (lambda: mf.rainflow_damage([1.0, 2.0, 1.0], slope=-3.0), "slope must be positive"),
     ],

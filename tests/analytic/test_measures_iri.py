@@ -274,9 +274,16 @@ def test_ride_number_of_two_paths():
         (
             np.arange(0.0, 50.1, 0.1),
             {"segment": 60.0},
-            r"segment must be at least 0\.4 m and at most the .* 50 m, got",
+            r"segment must be at least 0\.55 m and at most the .* 50 m, got",
         ),
-        (np.arange(0.0, 50.1, 0.1), {"segment": 0.1}, r"segment must be at least 0\.4 m .* got 0\.1 m"),
+        (np.arange(0.0, 50.1, 0.1), {"segment": 0.1}, r"segment must be at least 0\.55 m .* got 0\.1 m"),
+        (np.arange(50.0), {"average": 1e15}, "profile must have a step of at most"),
+        (
+            np.arange(0.0, 50.0, 0.1),
+            {"average": 49.8},
+            r"average must leave something of the .* 49\.9 m, got 49\.8 m",
+        ),
+        (np.arange(0.0, 50.0, 0.1), {"average": 1e15}, r"average must leave something of the .* got 1e\+15 m"),
         (np.arange(0.0, 50.1, 0.1), {"average": -1.0}, "average must not be negative"),
     ],
 )

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
 import movingfrf as mf
 from movingfrf.metrics.basic import assess
+from movingfrf.random_measures import random_measures
 from movingfrf.schema import COUPLED, labelled
+from tests.helpers import DAMPED
+
+PAVEMENT = DAMPED["euler_bernoulli_winkler"]
+TRUCK = mf.quarter_car(
+    body_mass=8900.0, wheel_mass=1100.0, suspension_stiffness=1e6, suspension_damping=3e4, tyre_stiffness=3.5e6
+)
 
 SPEED, STEP = 20.0, 1e-3
 
@@ -46,6 +55,59 @@ def test_dynamic_load_coefficient():
         mf.dynamic_load_coefficient(result), 1e3 / np.sqrt(2) / np.array([5e3, 8e3]), rtol=1e-12
     )
     assert mf.dynamic_load_coefficient(travelled(amplitude=1.0, loads=(0.0, 1.0)))[0] == np.inf
+    assert mf.dynamic_load_coefficient(travelled(amplitude=1.0, loads=(-500.0, 1.0)))[0] == np.inf
+
+
+def test_an_axle_that_hangs():
+    """Below zero in steady travel a load wears nothing; every measure is a number or infinite."""
+    result = travelled(amplitude=1e3, loads=(-500.0, 8e3))
+    assert mf.aggregate_force(result, power=1.5).static_aggregate.item() == pytest.approx(8e3**1.5)
+    assert np.isfinite(mf.road_wear(result, power=1.5)).all()
+    assert not any(np.isnan(measure.value) for measure in assess(result, dofs=["body"]))
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_an_axle_that_hangs_between_others():
+    """A body of 20 t on stiff axles at ±1.5 m, away from whose soft third one in the middle the road sags.
+
+    In steady travel each bears k (z + θx − G F) as the body sinks by z and, on a moving road, turns by θ:
+    F = (I + k G)⁻¹ k (z + θx), ΣF = m g, ΣFx = 0.
+    """
+    axles, stiffness = np.array([1.5, 0.0, -1.5]), np.array([5e9, 1e7, 5e9])
+    body = mf.Vehicle(
+        mass=np.diag([2e4, 3e4]),
+        damping=np.zeros((2, 2)),
+        stiffness=np.zeros((2, 2)),
+        contact_map=np.stack([np.ones(3), axles], axis=1),
+        contacts=[
+            mf.Contact(position=x, stiffness=k, damping=1e-3 * k) for x, k in zip(axles, stiffness, strict=True)
+        ],
+        vertical=[1.0, 0.0],
+        dof_names=["body", "pitch"],
+    )
+    compliance = PAVEMENT.moving_frf(axles[:, None] - axles, 20.0, [0.0])[0].real
+    motions = np.stack([np.ones(3), axles], axis=1)
+    forces = np.linalg.solve(np.eye(3) + stiffness[:, None] * compliance, stiffness[:, None] * motions)
+    loads = forces @ np.linalg.solve(motions.T @ forces, [2e4 * 9.81, 0.0])
+    assert loads[1] < 0
+
+    road = mf.realise(mf.IsoRoad.of_class("B"), length=120.0, seed=1)
+    history = mf.simulate(PAVEMENT, body, road, speed=20.0, duration=4.0, start=10.0)
+    spectral = mf.random_response(PAVEMENT, body, mf.IsoRoad.of_class("B"), speed=20.0)
+    for result, coefficients in (
+        (history, mf.dynamic_load_coefficient(history)),
+        (spectral, spectral.dynamic_load_coefficient.values),
+    ):
+        assert result.static_load.values == pytest.approx(loads, rel=1e-6)
+        assert np.isinf(coefficients).tolist() == [False, True, False]
+        found = [(finding["code"], finding["message"][:9]) for finding in json.loads(result.attrs["findings"])]
+        assert ("contact_lost", "contact 1") in found
+    found = {(m.quantity, m.name): m.value for m in assess(history)}
+    listed = {(m.quantity, m.name): m.value for m in random_measures(spectral)}
+    assert (
+        found["contact 1 force", "road stress factor"] == listed["contact 1 load", "road stress factor"] == np.inf
+    )
+    assert not any(np.isnan(value) for (quantity, _), value in found.items() if "pitch" not in quantity)
 
 
 @pytest.mark.parametrize("coefficient", [0.0, 0.1, 0.3])
@@ -126,12 +188,9 @@ def test_lost_contact():
 
 def test_simulated_trucks_repeat_themselves():
     """Two runs over one road at one speed are alike; over another road they have nothing in common."""
-    truck = mf.quarter_car(
-        body_mass=8900.0, wheel_mass=1100.0, suspension_stiffness=1e6, suspension_damping=3e4, tyre_stiffness=3.5e6
-    )
     roads = [mf.realise(mf.IsoRoad.of_class("B"), length=260.0, seed=seed) for seed in (1, 2)]
-    runs = [mf.simulate(mf.RigidGuideway(), truck, road, speed=20.0, duration=12.0) for road in roads]
-    again = mf.simulate(mf.RigidGuideway(), truck, roads[0], speed=20.0, duration=10.0, start=30.0)
+    runs = [mf.simulate(mf.RigidGuideway(), TRUCK, road, speed=20.0, duration=12.0) for road in roads]
+    again = mf.simulate(mf.RigidGuideway(), TRUCK, roads[0], speed=20.0, duration=10.0, start=30.0)
     assert mf.spatial_repeatability(runs[0], again)[0] > 0.95
     assert abs(mf.spatial_repeatability(*runs)[0]) < 0.3
 
@@ -185,6 +244,14 @@ def test_usual_measures_are_among_all():
         (lambda r: assess(r, weighting="Wx"), "weighting must be one of"),
         (lambda r: assess(r, slope=0.0), "slope must be positive"),
         (lambda r: assess(r.drop_vars("contact_force")), "result must be the coupled response of a vehicle"),
+        (lambda r: mf.measures(None), "result must be the coupled response of a vehicle"),
+        (
+            lambda r: mf.dynamic_load_coefficient(mf.transfer(PAVEMENT, TRUCK, speed=9.0, frequency=[1.0])),
+            "result must be",
+        ),
+        (lambda r: assess(r, weighting=["Wk"]), "weighting must be one of"),
+        (lambda r: mf.aggregate_force(r, spacing=1e-12), "a spacing of 1e-12 m between points needs about"),
+        (lambda r: mf.comfort(r, ["body"]), "dof must be one of body, pitch, got"),
         (lambda r: mf.comfort(r, "nose"), "dof must be one of body, pitch, got 'nose'"),
         (lambda r: mf.comfort(r.drop_vars("acceleration"), "body"), "result must be the coupled response"),
     ],

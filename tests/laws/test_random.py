@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -11,8 +12,11 @@ import scipy.linalg
 from scipy.integrate import quad, simpson
 from scipy.special import gamma
 from scipy.stats import norm
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import movingfrf as mf
+from movingfrf.coupling import solve_contacts
+from movingfrf.metrics.fatigue import METHODS
 from movingfrf.quadrature import resolved
 from movingfrf.random_measures import random_measures
 from movingfrf.random_vibration import peak_factor
@@ -38,6 +42,14 @@ SYMMETRIC = {
 }
 WHEELBASE = 2.6
 CAR = mf.full_car(**SYMMETRIC, roll_inertia=500.0, sides=(0.7, -0.7))
+
+
+@cache
+def reference_case():
+    """Half truck on a road of class B at 20 m/s."""
+    return mf.random_response(ROAD, VEHICLES["half_truck"], mf.IsoRoad.of_class("B"), speed=20.0)
+
+
 STATISTICS = ("rms", "crossing_rate", "peak_rate", "irregularity", "expected_peak")
 
 
@@ -431,6 +443,35 @@ def test_fatigue_of_a_narrow_band(slope):
         mf.spectral_fatigue(result, "force", slope=slope)
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("slope", [2.0, 4.0, 10.0])
+def test_fatigue_on_the_reference_case_is_positive(method, slope):
+    """And no more than a narrow band's; irregularities go down to 0.08, where a formula may leave its range."""
+    pytest.importorskip("FLife", reason="the extra `fatigue` is not installed")
+    result = reference_case()
+    for quantity in RANDOM_QUANTITIES:
+        found = mf.spectral_fatigue(result, quantity, slope=slope, method=method)
+        assert (found > 0).all()
+        assert (
+            found <= mf.spectral_fatigue(result, quantity, slope=slope, method="narrow_band") * (1 + 1e-6)
+        ).all()
+
+
+def test_what_is_no_random_response():
+    history = mf.simulate(
+        ROAD,
+        VEHICLES["half_truck"],
+        mf.harmonic(amplitude=0.01, wavelength=4.0, length=40.0),
+        speed=10.0,
+        duration=1.0,
+        start=5.0,
+    )
+    for result in (history, None):
+        for call in (lambda r: mf.spectral_fatigue(r, "contact_force", slope=4.0), random_measures):
+            with pytest.raises(mf.ParameterError, match="result must be the response to a random road"):
+                call(result)
+
+
 def test_measures_of_a_random_response():
     result = respond(coherence=None)
     found = {(measure.quantity, measure.name): measure for measure in random_measures(result)}
@@ -468,6 +509,16 @@ def test_a_resonance_without_damping_has_no_mean_square():
     assert np.isfinite(respond(bare, coherence=None).acceleration_rms).all()
 
 
+@pytest.mark.parametrize(("speed", "band"), [(1e-9, "2e-11 to 5e-09"), (1e8, r"2e\+06 to 5e\+08")])
+def test_rounding_is_not_blamed_on_damping(monkeypatch, speed, band):
+    """At speeds at which the band lies nowhere near the vehicle; given up early, since it never ends well."""
+    monkeypatch.setattr("movingfrf.quadrature.MOST_PANELS", 500)
+    with pytest.raises(
+        mf.SolveError, match=f"near .* Hz: no vibration of the vehicle is without .* rounding .* is {band} Hz"
+    ):
+        respond("quarter_car", RIGID, coherence=None, speed=speed)
+
+
 # Refusals
 
 
@@ -476,6 +527,69 @@ class Impossible:
 
     def between(self, spatial_frequency, apart):
         return np.where(np.abs(apart) > 1.0, -1.0, np.ones_like(apart)) * np.ones((spatial_frequency.size, 1, 1))
+
+
+class Wrong:
+    """A model that returns something else than it should."""
+
+    def __init__(self, change):
+        self.change = change
+
+    def between(self, spatial_frequency, apart):
+        return self.change(ISOTROPIC.between(spatial_frequency, apart))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            lambda shared: shared[:, 0],
+            r"must return an array \(frequency, path, path\), \(.*, 2, 2\), got \(.*, 2\)",
+        ),
+        (lambda shared: None, "must return an array"),
+        (lambda shared: shared + 0j, "must return real, finite numbers"),
+        (lambda shared: np.nan * shared, "must return real, finite numbers"),
+        (lambda shared: 0.5 * shared, "must be 1 between a path and itself"),
+        (lambda shared: np.triu(shared), "must be the same from left to right"),
+    ],
+)
+def test_coherence_that_breaks_the_contract(change, message):
+    with pytest.raises(mf.ParameterError, match=f"coherence {message}"):
+        respond("full_truck", coherence=Wrong(change))
+
+
+@pytest.mark.parametrize("coherence", ["isotropic", [1.0, 0.5], mf.IsotropicCoherence])
+def test_what_is_no_coherence(coherence):
+    for vehicle in ("half_truck", "full_truck"):
+        with pytest.raises(
+            mf.ParameterError, match=r"coherence must be a model, as IsotropicCoherence\(\) is, or a"
+        ):
+            respond(vehicle, coherence=coherence)
+
+
+def test_what_is_no_vehicle_and_no_spectrum():
+    with pytest.raises(mf.ParameterError, match="vehicle must be a Vehicle, got None"):
+        mf.random_response(ROAD, None, GROUND, speed=1.0)
+    with pytest.raises(mf.ParameterError, match="vehicle must be a Vehicle, got None"):
+        mf.transfer(ROAD, None, speed=1.0, frequency=[1.0])
+    with pytest.raises(
+        mf.ParameterError, match="spectrum must be a roughness spectrum, got the class IsoRoad itself"
+    ):
+        respond(spectrum=mf.IsoRoad, coherence=None)
+
+
+def test_many_small_matrices_are_solved_by_one_thread(monkeypatch):
+    """Of more than two contacts: LAPACK's threads would wait for each other."""
+    seen = []
+
+    def watched(*arguments):
+        seen.extend(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
+        return solve_contacts(*arguments)
+
+    monkeypatch.setattr("movingfrf.transfers.solve_contacts", watched)
+    with threadpool_limits(limits=2):
+        respond("three_axles", coherence=None)
+    assert set(seen) == {1}
 
 
 def test_what_is_refused():

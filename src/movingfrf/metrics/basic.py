@@ -8,9 +8,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from movingfrf._checks import Checks, FloatArray, checking
-from movingfrf.metrics.comfort import WEIGHTINGS, Comfort, felt
+from movingfrf.metrics.comfort import WEIGHTINGS, check_weighting, whole_body_vibration
 from movingfrf.metrics.fatigue import equivalent_amplitude
-from movingfrf.metrics.loads import contact_loss, dynamic_load_coefficient, road_stress_factor, road_wear
+from movingfrf.metrics.loads import (
+    check_coupled,
+    contact_loss,
+    dynamic_load_coefficient,
+    road_stress_factor,
+    road_wear,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,16 +52,24 @@ def measures(result: xr.Dataset) -> list[Measure]:
         translation and We if it is a rotation [m/s² or rad/s²]. Per observation point under prescribed loads: root
         mean square and peak of the deflection [m].
 
+    Raises
+    ------
+    ValueError
+        If the result is neither of these.
+
     References
     ----------
     Dynamic load coefficient: D. Cebon, Handbook of Vehicle-Road Interaction, Swets & Zeitlinger, 1999.
     """
-    if "contact_force" not in result:
+    variables = getattr(result, "data_vars", ())
+    if "force" in variables and "deflection" in variables:
         return [
             measure
             for point, deflection in zip(result.point.values, result.deflection.values.T, strict=True)
             for measure in _rms_and_peak(f"deflection at {point:g} m", deflection, "m")
         ]
+    with checking() as check:
+        check_coupled(check, result)
     contacts, dofs = range(result.sizes["contact"]), range(result.sizes["dof"])
     coefficients = dynamic_load_coefficient(result)
     return [
@@ -114,13 +128,11 @@ def assess(
     ['MTVV', 'VDV']
     """
     with checking() as check:
-        if "contact_force" not in result:
-            check.refuse("result", "must be the coupled response of a vehicle, with its contact forces")
-        else:
+        check_coupled(check, result)
+        if not check.faults:
             _check_chosen(check, "contacts", contacts, list(range(result.sizes["contact"])))
             _check_chosen(check, "dofs", dofs, result.dof.values.tolist())
-        if weighting not in WEIGHTINGS:
-            check.refuse("weighting", f"must be one of {', '.join(WEIGHTINGS)}, got {weighting!r}")
+        check_weighting(check, weighting)
         if slope is not None:
             check.positive("slope", slope, "1")
     names = result.dof.values.tolist()
@@ -181,7 +193,7 @@ def _of_acceleration(result: xr.Dataset, number: int, weighting: str) -> list[Me
     unit = str(result.dof_unit.values[number])
     name = weighting if unit == "m" else "We"
     standard = WEIGHTINGS[name].standard
-    weighted: Comfort = felt(acceleration, float(result.attrs["time_step"]), name)
+    weighted = whole_body_vibration(acceleration, float(result.attrs["time_step"]), name)
     return [
         *_rms_and_peak(quantity, acceleration, f"{unit}/s²"),
         Measure(quantity, "weighted rms", weighted.rms, f"{unit}/s²", f"{standard}, {name}"),

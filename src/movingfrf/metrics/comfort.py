@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import ComplexArray, FloatArray, checking
+from movingfrf._checks import Checks, ComplexArray, FloatArray, checking, shown
+from movingfrf.metrics.loads import check_coupled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,20 +33,20 @@ REACTIONS = (
     ("extremely uncomfortable", 2.0, np.inf),
 )
 
-# Multiplying factors of a seated person's axes for comfort, and the weighting of each (ISO 2631-1, 8.2.2.1).
+# Multiplying factors of a seated person's axes for comfort (ISO 2631-1, 8.2.2.1).
 SEATED = {
-    "seat x": ("Wd", 1.0),
-    "seat y": ("Wd", 1.0),
-    "seat z": ("Wk", 1.0),
-    "seat roll": ("We", 0.63),
-    "seat pitch": ("We", 0.4),
-    "seat yaw": ("We", 0.2),
-    "backrest x": ("Wc", 0.8),
-    "backrest y": ("Wd", 0.5),
-    "backrest z": ("Wd", 0.4),
-    "feet x": ("Wk", 0.25),
-    "feet y": ("Wk", 0.25),
-    "feet z": ("Wk", 0.4),
+    "seat x": 1.0,
+    "seat y": 1.0,
+    "seat z": 1.0,
+    "seat roll": 0.63,
+    "seat pitch": 0.4,
+    "seat yaw": 0.2,
+    "backrest x": 0.8,
+    "backrest y": 0.5,
+    "backrest z": 0.4,
+    "feet x": 0.25,
+    "feet y": 0.25,
+    "feet z": 0.4,
 }
 
 
@@ -142,11 +144,11 @@ def weighting(name: str, frequency: ArrayLike) -> ComplexArray:
     >>> abs(weighting("Wk", [1.0, 10.0, 100.0])).round(4)
     array([0.4825, 0.9884, 0.0887])
     """
-    _check_weighting(name)
     with checking() as check:
-        given = np.asarray(frequency)
-        check.array("frequency", given.ravel(), "Hz", (None,))
-    chosen, p = WEIGHTINGS[name], 2j * np.pi * np.asarray(given, float)
+        check_weighting(check, name)
+        shape = np.shape(frequency)
+        f = check.array("frequency", np.ravel(frequency), "Hz", (None,))
+    chosen, p = WEIGHTINGS[name], 2j * np.pi * f.reshape(shape)
     low, high = chosen.band
     factor = chosen.gain * (p / (2 * np.pi * low)) ** 2 / _second_order(p, low) / _second_order(p, high)
     if chosen.transition:
@@ -191,18 +193,16 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk") -> Flo
     """
     import scipy.fft
 
-    _check_weighting(name)
     with checking() as check:
+        check_weighting(check, name)
         check.positive("time_step", time_step, "s")
-        given = np.asarray(acceleration)
-        flat = given.reshape(len(given), -1) if given.ndim and given.size else given
-        values = check.array("acceleration", flat, "m/s²", (None, None))
+        values, shape = _histories(check, "acceleration", acceleration, "m/s²")
     # The slowest pole is that of the Butterworth high-pass: ω₁/√2.
     memory = -np.log(FORGOTTEN) * np.sqrt(2) / (2 * np.pi * WEIGHTINGS[name].band[0])
     padded = scipy.fft.next_fast_len(len(values) + int(np.ceil(memory / time_step)), real=True)
     factor = weighting(name, scipy.fft.rfftfreq(padded, time_step))
     spectra = scipy.fft.rfft(values, padded, axis=0)
-    return scipy.fft.irfft(spectra * factor[:, None], padded, axis=0)[: len(values)].reshape(given.shape)
+    return scipy.fft.irfft(spectra * factor[:, None], padded, axis=0)[: len(values)].reshape(shape)
 
 
 def running_rms(values: ArrayLike, time_step: float, window: float = RUNNING) -> FloatArray:
@@ -225,7 +225,7 @@ def running_rms(values: ArrayLike, time_step: float, window: float = RUNNING) ->
     Raises
     ------
     ValueError
-        If a time is not positive.
+        If a time is not positive, or values are not finite.
 
     References
     ----------
@@ -234,12 +234,13 @@ def running_rms(values: ArrayLike, time_step: float, window: float = RUNNING) ->
     with checking() as check:
         check.positive("time_step", time_step, "s")
         check.positive("window", window, "s")
-    squares = np.asarray(values, float) ** 2
+        histories, shape = _histories(check, "values", values, "any unit")
+    squares = histories**2
     energy = np.concatenate([np.zeros_like(squares[:1]), np.cumsum(squares, axis=0)])
     steps = max(round(window / time_step), 1)
     first = np.maximum(np.arange(1, len(energy)) - steps, 0)
     # Differences of a sum may come out just below zero.
-    return np.sqrt(np.maximum(energy[1:] - energy[first], 0.0) / steps)
+    return np.sqrt(np.maximum(energy[1:] - energy[first], 0.0) / steps).reshape(shape)
 
 
 def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
@@ -260,7 +261,7 @@ def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
     Raises
     ------
     ValueError
-        If the step is not positive.
+        If the step is not positive, or values are not finite.
 
     References
     ----------
@@ -268,7 +269,8 @@ def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
     """
     with checking() as check:
         check.positive("time_step", time_step, "s")
-    return (np.sum(np.asarray(values, float) ** 4, axis=0) * time_step) ** 0.25
+        histories, shape = _histories(check, "values", values, "m/s²")
+    return np.asarray((np.sum(histories**4, axis=0) * time_step) ** 0.25).reshape(shape[1:])
 
 
 def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk") -> Comfort:
@@ -310,23 +312,22 @@ def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk") -> Comfort:
     >>> felt.reactions
     ('fairly uncomfortable', 'uncomfortable')
     """
-    _check_weighting(weighting)
     with checking() as check:
-        if "acceleration" not in result:
-            check.refuse("result", "must be the coupled response of a vehicle, with its accelerations")
-        elif dof not in result.dof.values:
-            check.refuse("dof", f"must be one of {', '.join(map(str, result.dof.values))}, got {dof!r}")
+        check_weighting(check, weighting)
+        check_coupled(check, result)
+        if not check.faults and dof not in result.dof.values.tolist():
+            check.refuse("dof", f"must be one of {', '.join(map(str, result.dof.values))}, got {shown(dof)}")
     step = float(result.attrs["time_step"])
-    return felt(result.acceleration.sel(dof=dof).values, step, weighting)
+    return whole_body_vibration(result.acceleration.sel(dof=dof).values, step, weighting)
 
 
-def felt(acceleration: ArrayLike, time_step: float, weighting: str = "Wk") -> Comfort:
-    """Measure one acceleration history as `comfort` does.
+def whole_body_vibration(acceleration: ArrayLike, time_step: float, weighting: str = "Wk") -> Comfort:
+    """Measure an acceleration history, a recorded one for instance, as `comfort` measures a result's.
 
     Parameters
     ----------
     acceleration : array_like, shape (time,)
-        Acceleration [m/s² or rad/s²].
+        Acceleration of seat, floor or backrest along one axis [m/s² or rad/s²], zero before and after.
     time_step : float
         Step in time [s].
     weighting : str
@@ -341,6 +342,17 @@ def felt(acceleration: ArrayLike, time_step: float, weighting: str = "Wk") -> Co
     ------
     ValueError
         If there is no such weighting, the step is not positive, or there is not one finite history.
+
+    References
+    ----------
+    ISO 2631-1:1997, Mechanical vibration and shock: evaluation of human exposure to whole-body vibration.
+
+    Examples
+    --------
+    >>> time = np.arange(0.0, 60.0, 1e-3)
+    >>> found = whole_body_vibration(0.5 * np.sin(2 * np.pi * 8 * time), 1e-3, "Wk")
+    >>> round(found.rms, 3), found.exceeded
+    (0.366, ())
     """
     with checking() as check:
         check.array("acceleration", acceleration, "m/s²", (None,))
@@ -395,7 +407,7 @@ def vibration_total(rms: ArrayLike, factors: ArrayLike = 1.0) -> float:
     rms : array_like, shape (axis,)
         Weighted rms acceleration of each axis [m/s² or rad/s²].
     factors : array_like, shape (axis,)
-        The factor k of each; those of a seated person are in `SEATED`, those for health are 1.4, 1.4 and 1.
+        The factor k of each, for health 1.4, 1.4 and 1; for a seated person's comfort see `seated_total`.
 
     Returns
     -------
@@ -418,8 +430,51 @@ def vibration_total(rms: ArrayLike, factors: ArrayLike = 1.0) -> float:
     """
     with checking() as check:
         values = check.array("rms", rms, "m/s²", (None,))
-        scales = check.array("factors", np.broadcast_to(factors, values.shape), "1", (values.size,))
+        scales = check.array("factors", factors, "1", (values.size,) if np.ndim(factors) else ())
     return float(np.sqrt(np.sum((scales * values) ** 2)))
+
+
+def seated_total(rms: Mapping[str, float]) -> float:
+    """Combine what a seated person feels at seat, backrest and feet, each axis with its factor for comfort.
+
+    Parameters
+    ----------
+    rms : mapping of str to float
+        Weighted rms acceleration [m/s² or rad/s²] by place and axis: `seat` with `x`, `y`, `z` (factor 1), `roll`
+        (0.63), `pitch` (0.4) and `yaw` (0.2); `backrest` with `x` (0.8), `y` (0.5) and `z` (0.4); `feet` with `x`,
+        `y` (0.25) and `z` (0.4). Those that are left out count as zero. Weighted with Wk on the vertical of the
+        seat and on all of the feet, Wc on the backrest's x, We on rotations, Wd on the others.
+
+    Returns
+    -------
+    float
+        Overall vibration total value [m/s²].
+
+    Raises
+    ------
+    ValueError
+        If there is no such place and axis, or a value is negative.
+
+    References
+    ----------
+    ISO 2631-1:1997, 8.2.2.1 and 8.2.3.
+
+    Examples
+    --------
+    >>> round(seated_total({"seat z": 0.5, "seat pitch": 0.6, "backrest x": 0.3}), 3)
+    0.604
+    """
+    with checking() as check:
+        given = rms.items() if isinstance(rms, Mapping) else ()
+        if not given:
+            check.refuse(
+                "rms", f"must give accelerations by place and axis, as {{'seat z': 0.5}}, got {shown(rms)}"
+            )
+        for name, value in given:
+            if name not in SEATED:
+                check.refuse("rms", f"must be of {', '.join(SEATED)}, got {shown(name)}")
+            check.not_negative(f"rms[{name!r}]", value, "m/s²")
+    return vibration_total(list(rms.values()), [SEATED[name] for name in rms])
 
 
 def _second_order(p: ComplexArray, frequency: float, quality: float = np.sqrt(0.5)) -> ComplexArray:
@@ -427,7 +482,24 @@ def _second_order(p: ComplexArray, frequency: float, quality: float = np.sqrt(0.
     return 1 + ratio / quality + ratio**2
 
 
-def _check_weighting(name: object) -> None:
-    with checking() as check:
-        if name not in WEIGHTINGS:
-            check.refuse("weighting", f"must be one of {', '.join(WEIGHTINGS)}, got {name!r}")
+def check_weighting(check: Checks, name: object) -> None:
+    """Refuse what names no frequency weighting.
+
+    Parameters
+    ----------
+    check : Checks
+        Checks that are going on.
+    name : object
+        What was given as a name.
+    """
+    if not (isinstance(name, str) and name in WEIGHTINGS):
+        check.refuse("weighting", f"must be one of {', '.join(WEIGHTINGS)}, got {shown(name)}")
+
+
+def _histories(check: Checks, name: str, values: ArrayLike, unit: str) -> tuple[FloatArray, tuple[int, ...]]:
+    """Histories side by side (time, channel), and the shape in which they came."""
+    shape = np.shape(values)
+    if not np.prod(shape, dtype=int) or not shape:
+        check.refuse(name, f"must hold at least one sample, in a first axis over time, got shape {shape}")
+        return np.ones((1, 1)), shape
+    return check.array(name, np.reshape(values, (shape[0], -1)), unit, (None, None)), shape

@@ -82,7 +82,7 @@ def iri(profile: Profile, *, segment: float | None = None, average: float = AVER
     Raises
     ------
     ValueError
-        If stations are uneven, or the profile is shorter than 11 m or than one segment.
+        If stations are uneven, or the profile is shorter than 11 m, than one segment or than the average.
 
     References
     ----------
@@ -158,20 +158,22 @@ def _segments(
     step, length = profile.even_step(UNEVEN) or 0.0, float(np.ptp(profile.stations))
     with checking() as check:
         average = check.not_negative("average", average, "m")
-        weights = _weights(average / step) if step and average >= 0 else np.ones(1)
+        # A whole window, a fraction of a step at either end of it, and a step to measure.
+        shortest = average + 3 * step
         if not step:
             check.refuse("profile", "must have stations at even steps [m]; resample it first")
         elif step > LONGEST_STEP:
             check.refuse("profile", f"must have a step of at most {LONGEST_STEP:g} m, got {step:g} m")
         if length < RUN_IN:
             check.refuse("profile", f"must be at least {RUN_IN:g} m long, got {length:g} m")
-        if segment is not None:
-            shortest = (weights.size + 1) * step
-            if not shortest <= check.positive("segment", segment, "m") <= length * (1 + 1e-9):
-                check.refuse(
-                    "segment",
-                    f"must be at least {shortest:g} m and at most the profile's {length:g} m, got {segment!r} m",
-                )
+        elif shortest > length:
+            check.refuse("average", f"must leave something of the profile's {length:g} m, got {average:g} m")
+        elif segment is not None and not shortest <= check.positive("segment", segment, "m") <= length * (1 + 1e-9):
+            check.refuse(
+                "segment",
+                f"must be at least {shortest:g} m and at most the profile's {length:g} m, got {segment!r} m",
+            )
+    weights = _weights(average / step)
     span = length if segment is None else segment
     # Where each segment begins and ends, in steps; a rounding must not lose the last one.
     bounds = np.floor(np.arange(int(length / span + 1e-6) + 1) * span / step + 1e-6).astype(int)

@@ -7,13 +7,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import BoolArray, FloatArray, checking
+from movingfrf._checks import BoolArray, Checks, FloatArray, checking, require_memory
 
 if TYPE_CHECKING:
     import xarray as xr
 
 # Share of the road points that bear at most the aggregate force by which a road is judged.
 PERCENTILE = 95.0
+
+# Bytes per point of the road at the peak of adding up forces, beside those of every path.
+BYTES_PER_POINT = 64
 
 
 class ContactLoss(NamedTuple):
@@ -24,7 +27,7 @@ class ContactLoss(NamedTuple):
 
 
 def dynamic_load_coefficient(result: xr.Dataset) -> FloatArray:
-    """Root mean square of each dynamic contact force over its static load.
+    """Root mean square of each dynamic contact force over its load in steady travel.
 
     Parameters
     ----------
@@ -34,7 +37,8 @@ def dynamic_load_coefficient(result: xr.Dataset) -> FloatArray:
     Returns
     -------
     ndarray, shape (contact,)
-        Dynamic load coefficients, dimensionless; inf for a contact without static load.
+        Dynamic load coefficients, dimensionless; inf for a contact that bears nothing in steady travel, which
+        may come of a road that sags away from under an axle between others.
 
     Raises
     ------
@@ -45,10 +49,27 @@ def dynamic_load_coefficient(result: xr.Dataset) -> FloatArray:
     ----------
     D. Cebon, Handbook of Vehicle-Road Interaction, Swets & Zeitlinger, 1999.
     """
-    _check_coupled(result)
-    rms = np.sqrt(np.mean(result.contact_force.values**2, axis=0))
-    static = result.static_load.values
-    return np.divide(rms, static, out=np.full(rms.shape, np.inf), where=static != 0)
+    with checking() as check:
+        check_coupled(check, result)
+    return load_coefficient(np.sqrt(np.mean(result.contact_force.values**2, axis=0)), result.static_load.values)
+
+
+def load_coefficient(rms: FloatArray, load: FloatArray) -> FloatArray:
+    """Root mean square of dynamic forces over steady loads.
+
+    Parameters
+    ----------
+    rms : ndarray, shape (contact,)
+        Root mean square of the dynamic force [N].
+    load : ndarray, shape (contact,)
+        Contact force in steady travel [N].
+
+    Returns
+    -------
+    ndarray, shape (contact,)
+        Dynamic load coefficients, dimensionless; inf where the load is not positive.
+    """
+    return np.divide(rms, load, out=np.full(rms.shape, np.inf), where=load > 0)
 
 
 def road_stress_factor(coefficient: ArrayLike) -> FloatArray:
@@ -90,7 +111,7 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
     """Add up what all contacts of a vehicle do to each point of the road, Σ_j P_jk^n.
 
     P_jk is the total force of contact j as it passes point k. Points lie at whole multiples of the spacing, where
-    every contact passes during the record. A force that turns to tension counts as none.
+    every contact passes during the record. A force that turns to tension counts as none, a static load too.
 
     Parameters
     ----------
@@ -109,7 +130,8 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
     Raises
     ------
     ValueError
-        If the result has no contact forces, a value is not positive, or no point meets every contact.
+        If the result has no contact forces, a value is not positive, no point meets every contact, or memory does
+        not hold the points.
 
     References
     ----------
@@ -131,27 +153,31 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
     import xarray as xr
     from scipy.interpolate import CubicSpline
 
-    _check_coupled(result)
     with checking() as check:
+        check_coupled(check, result)
         check.positive("power", power, "1")
         check.positive("spacing", spacing, "m")
     speed, time = result.attrs["speed"], result.time.values
     starts = result.attrs["start"] + result.position.values
     first, last = starts.max() + speed * time[0], starts.min() + speed * time[-1]
+    static, paths = result.static_load.values, result.path.values
+    numbers = np.unique(paths)
+    require_memory(
+        (last - first) / spacing * (BYTES_PER_POINT + 8 * numbers.size),
+        f"a spacing of {spacing:g} m between points",
+    )
     points = spacing * np.arange(np.ceil(first / spacing - 1e-9), np.floor(last / spacing + 1e-9) + 1)
     if not points.size:
         raise ValueError(
             f"result must be long enough for every contact to pass one point, got {first:g} to {last:g} m"
         )
-    static, paths = result.static_load.values, result.path.values
-    numbers = np.unique(paths)
     found, rest = np.zeros((points.size, numbers.size)), np.zeros(numbers.size)
     for contact, start in enumerate(starts):
         passed = np.clip((points - start) / speed, time[0], time[-1])
         force = static[contact] + CubicSpline(time, result.contact_force.values[:, contact])(passed)
         column = int(np.searchsorted(numbers, paths[contact]))
         found[:, column] += np.maximum(force, 0.0) ** power
-        rest[column] += static[contact] ** power
+        rest[column] += max(static[contact], 0.0) ** power
     units = "N" if power == 1 else f"N^{power:g}"
     return xr.Dataset(
         {
@@ -273,7 +299,8 @@ def contact_loss(result: xr.Dataset) -> ContactLoss:
     ValueError
         If the result has no contact forces.
     """
-    _check_coupled(result)
+    with checking() as check:
+        check_coupled(check, result)
     lost = result.contact_force.values + result.static_load.values <= 0
     step = float(result.attrs["time_step"])
     longest = np.array([_longest_run(column) for column in lost.T]) * step
@@ -286,7 +313,15 @@ def _longest_run(flags: BoolArray) -> int:
     return int((edges[1::2] - edges[::2]).max(initial=0))
 
 
-def _check_coupled(result: xr.Dataset) -> None:
-    with checking() as check:
-        if "contact_force" not in result:
-            check.refuse("result", "must be the coupled response of a vehicle, with its contact forces")
+def check_coupled(check: Checks, result: object) -> None:
+    """Refuse what is not the response of a vehicle in time.
+
+    Parameters
+    ----------
+    check : Checks
+        Checks that are going on.
+    result : object
+        What was given as a result.
+    """
+    if not {"contact_force", "static_load", "acceleration"} <= set(getattr(result, "data_vars", ())):
+        check.refuse("result", "must be the coupled response of a vehicle, with its contact forces")
