@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import movingfrf as mf
 from movingfrf.cli import main
+from movingfrf.methods import chosen
 from movingfrf.scenario import KINDS, named_vehicle, parse_scenario
 from movingfrf.vehicles.catalogue import CATALOGUE
 from tests.helpers import HALF_TRUCK
@@ -300,6 +304,16 @@ def test_a_vehicle_by_its_name_its_matrices_or_its_scenario(tmp_path):
         named_vehicle(tmp_path / "bad.toml")
 
 
+def test_the_scenarios_of_the_documentation_are_in_order(tmp_path):
+    text = (Path(__file__).parents[1] / "docs" / "vehicles.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    assert len(blocks) >= 5
+    mf.write_vehicle(mf.catalogue(name="half_truck"), tmp_path / "lorry.npz")
+    for block in blocks:
+        if "[vehicle]" in block:
+            assert built(block, folder=tmp_path).static_loads.min() > 0
+
+
 def test_the_command_lists_and_describes(tmp_path, capsys):
     assert main(["vehicles"]) == 0
     told = capsys.readouterr().out
@@ -314,12 +328,48 @@ def test_the_command_lists_and_describes(tmp_path, capsys):
     assert "392.40 kN" in capsys.readouterr().out
     for arguments, message in (
         (["vehicles", "tank"], "name must be one of golden_car"),
+        (["vehicles", "half_trck"], "got 'half_trck' (did you mean 'half_truck'?)"),
         (["vehicles", "none.npz"], "cannot read none.npz"),
         (["vehicles", "--output", "x.npz"], "--output needs the name of a vehicle"),
         (["vehicles", "half_truck", "--output", str(tmp_path / "x.xls")], "is written to .mat or .npz"),
     ):
         assert main(arguments) == 2
         assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (TEXTS["seated"].replace("half_truck", "two_axle_truck"), "% of critical damping: it takes long to settle"),
+        (TEXTS["bogie"] + "[unused]", ""),
+    ],
+)
+def test_check_remarks_on_what_is_in_order(text, words, tmp_path, capsys):
+    file = tmp_path / "case.toml"
+    file.write_text(
+        text.replace("[unused]", "") + GROUND.replace("duration = 4.0", "duration = 4.0\ntime_step = 0.05")
+    )
+    assert main(["check", str(file)]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert words in told
+    assert ("but a step of 0.05 s resolves only 10 Hz" in told) == (
+        parse_scenario(file.read_text()).vehicle.natural_frequencies.max() > 10
+    )
+    assert "in order" in told
+
+
+def test_a_vehicle_on_rigid_contacts_or_longer_than_a_struck_road_is_not_compared_with_those():
+    """The usual methods that strike 40 m have no room for a train; rigid wheels cannot be stepped."""
+    ground = GROUND.replace(
+        '[guideway]\nkind = "rigid_guideway"',
+        '[guideway]\nbeam = {kind = "euler_bernoulli_beam", bending_stiffness = 6e6, mass = 60.0}\n'
+        'foundation = {kind = "spring", stiffness = 1e8, damping = 1e5}',
+    )
+    stiff = TEXTS["train"].replace("axle_spacing = 2.56", "axle_spacing = 2.56\ncontact_stiffness = 2e9")
+    assert set(chosen(parse_scenario(stiff + ground), None)) == {"moving-frf", "cdfm", "cdfm-window", "sim"}
+    assert "duhamel" in chosen(parse_scenario(TEXTS["catalogue"] + ground), None)
+    with pytest.raises(ValueError, match=r"rigid contacts .* there is nothing to compare"):
+        chosen(parse_scenario(TEXTS["train"] + ground), None)
 
 
 def test_a_train_is_described_in_short(tmp_path, capsys):

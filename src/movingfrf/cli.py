@@ -108,12 +108,14 @@ def check(file: Path, /) -> None:
     file
         The scenario.
     """
-    from movingfrf.describe import described
+    from movingfrf.describe import described, remarks
     from movingfrf.scenario import read_scenario
 
     scenario = read_scenario(file)
     console = _console()
     _print_sections(console, described(scenario))
+    if noted := remarks(scenario):
+        _print_findings(console, noted)
     console.print(f"{file}: in order", soft_wrap=True)
 
 
@@ -147,8 +149,8 @@ def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Param
             console.print(f"  {entry.summary}", soft_wrap=True)
             console.print(
                 f"  {len(made.dof_names)} degrees of freedom, {count(len(made.contacts), 'contact')}, "
-                f"{mass / 1e3:.4g} t, {made.natural_frequencies.min():.3g} to "
-                f"{made.natural_frequencies.max():.3g} Hz",
+                f"{mass / 1e3:.4g} t, {made.natural_frequencies.min():.3g} to {made.natural_frequencies.max():.3g} "
+                f"Hz, damped by {100 * made.damping_ratios.min():.2g} % or more",
                 soft_wrap=True,
             )
             console.print(f"  source: {entry.source}", soft_wrap=True)

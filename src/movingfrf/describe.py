@@ -8,6 +8,7 @@ import numpy as np
 
 from movingfrf._checks import FloatArray
 from movingfrf.coupling import joined, steady_state
+from movingfrf.findings import near_critical
 from movingfrf.roughness.profiles import Profile
 from movingfrf.roughness.spectra import fit_iso, iso_class, welch
 from movingfrf.scenario import Scenario
@@ -18,6 +19,9 @@ from movingfrf.vehicles.modes import Mode, vehicle_modes
 
 # A section: its heading and its lines of name and value.
 Section = tuple[str, list[tuple[str, str]]]
+
+# Less than this share of critical damping, and a longer footprint [m], are worth a remark.
+LITTLE_DAMPING, LONG_FOOTPRINT = 0.02, 1.0
 
 # Words and contacts of a list that are written out, and the difference between poles that count as one.
 MOST_WORDS, MOST_CONTACTS, SAME_POLE = 14, 12, 1e-6
@@ -45,6 +49,41 @@ def described(scenario: Scenario) -> list[Section]:
     if scenario.loads is not None:
         sections.append(("Loads", _loads(scenario)))
     return [*sections, ("Run", _run(scenario))]
+
+
+def remarks(scenario: Scenario) -> list[str]:
+    """Say what a scenario that is in order nevertheless invites to look at again.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        A checked scenario.
+
+    Returns
+    -------
+    list of str
+        Sentences; empty if there is nothing to remark.
+    """
+    journey, vehicle = scenario.journey, scenario.vehicle
+    found = [finding.message for finding in near_critical(journey.speed, float(scenario.guideway.critical_speed))]
+    if vehicle is None:
+        return found
+    frequencies, ratios = vehicle.natural_frequencies, vehicle.damping_ratios
+    fastest, nyquist = float(frequencies.max(initial=0.0)), 0.5 / journey.time_step
+    if fastest > nyquist:
+        found.append(
+            f"the vehicle vibrates at up to {fastest:.4g} Hz, but a step of {journey.time_step:g} s resolves only "
+            f"{nyquist:.4g} Hz"
+        )
+    if frequencies.size and ratios.min() < LITTLE_DAMPING:
+        found.append(
+            f"a vibration of the vehicle at {frequencies[ratios.argmin()]:.3g} Hz has {100 * ratios.min():.2g} % "
+            "of critical damping: it takes long to settle, and its size depends on that number"
+        )
+    longest = max((contact.footprint for contact in vehicle.contacts), default=0.0)
+    if longest > LONG_FOOTPRINT:
+        found.append(f"a footprint of {longest:g} m is longer than that of any tyre")
+    return found
 
 
 def _guideway(scenario: Scenario) -> list[tuple[str, str]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import FloatArray
+from movingfrf._checks import FloatArray, nearest
 from movingfrf.guideways.base import Guideway
 from movingfrf.guideways.track import EulerBernoulliBeam, OnMass, Track
 from movingfrf.journey import Journey
@@ -243,6 +242,9 @@ WITH_LOADS: dict[str, Method] = {
     "newmark-window": Method(_newmark_window, "Newmark's method, a stretch of road that travels along", True),
 }
 
+# What strikes 40 m of road has no room for a vehicle longer than this [m]; it is then not among the usual ones.
+STRUCK, LONGEST_ON_STRUCK = ("moving-frf-fe", "duhamel"), 16.0
+
 # What is compared if nobody says; and the variant that is shown beside a method.
 USUAL = ("moving-frf", "moving-frf-fe", "duhamel", "cdfm", "sim", "newmark")
 BESIDE = {"cdfm": "cdfm-window", "newmark": "newmark-window"}
@@ -276,12 +278,20 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
             "guideway must be a track with an Euler–Bernoulli beam, since all methods but the first divide it into "
             f"finite elements, got a {kind}"
         )
-    wanted = [name for name in USUAL if name in known] if names is None else list(names)
+    vehicle = scenario.vehicle
+    if vehicle is not None and np.isinf(vehicle.springs).any():
+        raise ValueError(
+            "the vehicle has rigid contacts (stiffness = inf), which only the moving FRF knows, so there is "
+            "nothing to compare: give each contact a finite stiffness [N/m], as hertzian_stiffness does for a "
+            "wheel on a rail"
+        )
+    long = vehicle is not None and np.ptp(vehicle.positions) > LONGEST_ON_STRUCK
+    usual = [name for name in USUAL if name in known and not (long and name in STRUCK)]
+    wanted = usual if names is None else list(names)
     unknown = [name for name in wanted if name not in known]
     if unknown or not wanted:
         what = "prescribed loads" if scenario.vehicle is None else "a vehicle"
-        close = difflib.get_close_matches(unknown[0], known, n=1) if unknown and unknown[0] not in others else []
-        hint = f" (did you mean {close[0]!r}?)" if close else ""
+        hint = nearest(unknown[0], known) if unknown and unknown[0] not in others else ""
         raise ValueError(
             f"methods for a scenario with {what} are {', '.join(known)}; got {', '.join(unknown) or 'none'}{hint}"
         )

@@ -6,7 +6,6 @@ arguments, and the checks are those that the function makes itself; a new kind i
 
 from __future__ import annotations
 
-import difflib
 import inspect
 import re
 import tomllib
@@ -18,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from movingfrf import forces
-from movingfrf._checks import Fault, ParameterError, checking, shown
+from movingfrf._checks import Fault, ParameterError, checking, nearest, shown
 from movingfrf.guideways.base import Guideway
 from movingfrf.guideways.rigid import RigidGuideway
 from movingfrf.guideways.track import EulerBernoulliBeam, OnMass, ShearLayer, Spring, TimoshenkoBeam, track
@@ -513,7 +512,7 @@ class _Builder:
         if kind is None:
             self.faults.append(Fault(f"{path}.kind", f"is missing; it is one of {', '.join(kinds)}"))
         elif not isinstance(kind, str) or kind not in kinds:
-            hint = _nearest(str(kind), kinds)
+            hint = nearest(str(kind), kinds)
             self.faults.append(Fault(f"{path}.kind", f"must be one of {', '.join(kinds)}, got {shown(kind)}{hint}"))
         else:
             return kinds[kind]
@@ -548,7 +547,7 @@ class _Builder:
             if key not in known:
                 allowed = ", ".join(sorted(known))
                 self.faults.append(
-                    Fault(f"{prefix}{key}", f"is not known here{_nearest(key, known)}; allowed are {allowed}")
+                    Fault(f"{prefix}{key}", f"is not known here{nearest(key, known)}; allowed are {allowed}")
                 )
         missing = set(required) - table.keys()
         for key in sorted(missing):
@@ -563,9 +562,3 @@ class _Builder:
             self.faults.append(Fault(path, str(error)))
             return False
         return True
-
-
-def _nearest(word: str, known: Iterable[str]) -> str:
-    """Suggest the nearest spelling."""
-    close = difflib.get_close_matches(word, list(known), n=1)
-    return f" (did you mean {close[0]!r}?)" if close else ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from movingfrf._checks import checking
+from movingfrf._checks import checking, nearest, shown
 from movingfrf.vehicles.base import Vehicle
 from movingfrf.vehicles.rail import carriage
 from movingfrf.vehicles.road import full_car, half_car, quarter_car
@@ -237,5 +237,6 @@ def catalogue(*, name: str) -> Vehicle:
     """
     with checking() as check:
         if not isinstance(name, str) or name not in CATALOGUE:
-            check.refuse("name", f"must be one of {', '.join(CATALOGUE)}, got {name!r}")
+            hint = nearest(name, CATALOGUE) if isinstance(name, str) else ""
+            check.refuse("name", f"must be one of {', '.join(CATALOGUE)}, got {shown(name)}{hint}")
     return CATALOGUE[name].make()
