@@ -253,7 +253,7 @@ def assemble(
         mass=free.T @ mass @ free,
         damping=free.T @ damping @ free,
         stiffness=free.T @ stiffness @ free,
-        contact_map=contact_map.reshape(len(contacts), -1) @ free,
+        contact_map=contact_map @ free,
         contacts=list(contacts),
         vertical=vertical[kept],
         dof_names=[layout.names[n] for n in kept],
