@@ -31,10 +31,21 @@ SELECTION = [
     "tests/laws/test_truncation.py",
     "tests/laws/test_random.py",
     "tests/test_roads.py",
+    "tests/test_random_command.py",
 ]
 
 # These first where the fault lies in files of profiles, what is done to them and what is said of them.
 PROFILES = ["tests/test_preparation.py", "tests/test_readers.py", "tests/test_profile_description.py"]
+
+# These first where the fault lies in what is shown: figures, tables, files.
+REPORTS = [
+    "tests/test_plots.py",
+    "tests/test_measure_command.py",
+    "tests/test_random_command.py",
+    "tests/test_report.py",
+    "tests/test_cli.py",
+]
+SHOWN = ("plots", "illustrations", "page", "random_report", "cli", "output", "wording")
 
 # These first where the fault lies in the independent way, and last otherwise.
 REFERENCE = [
@@ -778,6 +789,57 @@ FAULTS = [
     Fault(
         "edges counted with spikes", "profile_description.py", "np.flatnonzero(peak & (bend", "np.flatnonzero((bend"
     ),
+    Fault(
+        "fitted beyond the content",
+        "roughness/fitting.py",
+        "start + _until_cliff(log_n",
+        "log_n.size + 0 * len(log_n",
+    ),
+    Fault(
+        "fitted below the content", "roughness/fitting.py", "return end - _until_cliff", "return 0 * _until_cliff"
+    ),
+    Fault("long waves that bend cut off", "roughness/fitting.py", "beyond = max(slope, 0.0)", "beyond = 0.0"),
+    Fault("corner of a filter fitted", "roughness/fitting.py", "(below[:end] < KEPT)", "(below[:end] < np.inf)"),
+    Fault("any spectrum a power law", "roughness/fitting.py", "> LARGEST_MISFIT:", "> np.inf:"),
+    Fault("class from far away", "roughness/fitting.py", "if not near or", "if"),
+    Fault("no doubt about a class", "roughness/fitting.py", "< CLASS_WIDTH", "< np.inf"),
+    Fault("millimetres pass for metres", "profile_description.py", '(2 * CLASS_CENTRES["G"], 200.0)', "(1e9, 1e9)"),
+    Fault("one level stretch of many", "profile_description.py", "[:MOST_STRETCHES]", "[:1]"),
+    Fault(
+        "equal paths told apart",
+        "roughness/profiles.py",
+        "setdefault(blake2b(column + 0.0).digest()",
+        "setdefault(bytes([path])",
+    ),
+    # What is left out, told apart, cut and refused.
+    Fault(
+        "vehicle that never runs in",
+        "metrics/basic.py",
+        "whole, result = result, result.isel",
+        "whole, _ = result, result.isel",
+    ),
+    Fault(
+        "weighting that starts anew",
+        "metrics/comfort.py",
+        "values = weighted(acceleration, time_step, weighting)[first:]",
+        "values = weighted(np.asarray(acceleration)[first:], time_step, weighting)",
+    ),
+    Fault("limit the other way", "metrics/basic.py", "if name in felt.exceeded", "if name not in felt.exceeded"),
+    Fault("one refusal for all", "metrics/basic.py", "if common_points(result).size:", "if True:"),
+    Fault("nan that passes", "schema.py", "~np.isfinite(values)", "np.isinf(values)"),
+    Fault(
+        "rounding that is felt",
+        "random_vibration.py",
+        'statistics["acceleration_rms"] > 0, _',
+        'statistics["acceleration_rms"] >= 0, _',
+    ),
+    Fault("curve that hides another", "plots.py", "<= COINCIDENT * np.abs(other)", "<= np.abs(other)"),
+    Fault("roll for a bounce", "plots.py", "units[dof] != units[one] or abs(size", "abs(size"),
+    Fault("wheels before bodies", "plots.py", "key=lambda dof: rms[dof])", "key=lambda dof: -rms[dof])"),
+    Fault("moving FRF up to a truncation", "illustrations.py", "return min(max(ends), kept)", "return kept"),
+    Fault("table wider than the console", "cli.py", "if pieces[-1] and width > left:", "if False:"),
+    Fault("once in 1e46 seconds", "wording.py", "0 < value < NEVER", "0 < value < 0"),
+    Fault("file without accelerations", "output.py", "if not label.optional]", "if label.optional]"),
 ]
 
 
@@ -787,6 +849,8 @@ def selection(fault: Fault | None) -> list[str]:
     independent = file.startswith(("reference/", "guideways/sampled"))
     if file.startswith(("roughness/fi", "roughness/formats", "roughness/preparation", "profile_")):
         return PROFILES + SELECTION + REFERENCE
+    if file.removesuffix(".py") in SHOWN:
+        return REPORTS + SELECTION + REFERENCE
     chosen = REFERENCE + SELECTION if independent else SELECTION + REFERENCE
     return sorted(chosen, key=lambda tests: "plate" not in tests) if "plate" in file else chosen
 
@@ -811,7 +875,7 @@ def outcome(fault: Fault | None) -> tuple[int, str]:
     """Run the tests against a copy, with a fault or without: exit status and the first test that failed."""
     with tempfile.TemporaryDirectory(prefix="movingfrf-fault-") as folder:
         copy = Path(folder).resolve()
-        for part in ("src", "tests"):
+        for part in ("src", "tests", "docs"):
             shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
         shutil.copy(ROOT / "pyproject.toml", copy)
         if fault:

@@ -1,5 +1,6 @@
 """The command, as a user meets it: files, messages, exit statuses."""
 
+import io
 import json
 import os
 import signal
@@ -10,8 +11,10 @@ import time
 import numpy as np
 import pytest
 import xarray as xr
+from rich.console import Console
 
-from movingfrf.cli import main
+from movingfrf.cli import _cell, _head, _print_columns, main
+from movingfrf.metrics.basic import Measure
 from tests.test_scenario import LOADS, edited
 
 SHORT = edited(duration=2.0)
@@ -163,3 +166,31 @@ def test_interruption_leaves_nothing(tmp_path):
     assert "interrupted" in told
     assert "Traceback" not in told
     assert not output.exists()
+
+
+@pytest.mark.parametrize("width", [32, 60, 80, 200])
+def test_a_printed_table_fits_and_loses_nothing(width):
+    """No line is wider than the console, and every word of a head and every number is there, whole."""
+    heads = ["resolution [m]", "dynamic load coefficient", *(f"acceleration of wheel {n} [m/s²]" for n in range(6))]
+    rows = {f"contact {n} force": [f"{1.234e5 + n + 10 * column:.7g}" for column in range(8)] for n in range(3)}
+    written = io.StringIO()
+    _print_columns(Console(width=width, file=written, markup=False), "contact", heads, rows)
+    told = written.getvalue()
+    assert max(map(len, told.splitlines())) <= width
+    assert "…" not in told
+    words = told.split()
+    assert set(words) >= {word for head in heads for word in head.split()}
+    assert all(words.count(cell) == 1 for cells in rows.values() for cell in cells)
+    pieces = words.count("contact")
+    assert pieces > 3 if width == 32 else True
+    assert width < 200 or told.count("\n\n") == 1
+
+
+def test_numbers_that_are_none_or_never():
+    """A rate of 1e-46 a second says never; what has no value is a dash; what has no dimension has no unit."""
+    assert _cell(Measure("x", "lift-offs", 2.03e-46, "1/s")) == "< 1e-12"
+    assert _cell(Measure("x", "share", 0.0, "1")) == "0"
+    assert _cell(Measure("x", "rms", 2.03e-46, "m")) == "2.03e-46"
+    assert _cell(Measure("x", "crossing rate", float("nan"), "1/s")) == "–"
+    assert _head("dynamic load coefficient", "1") == "dynamic load coefficient"
+    assert _head("static", "N") == "static [N]"

@@ -7,6 +7,7 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import movingfrf as mf
@@ -61,6 +62,30 @@ def test_files_hold_all_digits_and_units(file, tmp_path):
     assert [row | {"value": float(row["value"])} for row in rows] == wanted
 
 
+def test_verdicts_and_a_later_start(file, tmp_path, capsys):
+    options = ["--dof", "bounce", "--from", "1", "--output", str(tmp_path / "m.json")]
+    assert main(["measure", str(file), *options]) == 0
+    told = capsys.readouterr().out
+    wanted = mf.assess(load(file), dofs=["bounce"], since=1.0)
+    noted = [measure for measure in wanted if measure.note]
+    assert len(noted) == 4
+    for measure in noted:
+        assert f"- {measure.quantity}, {measure.name}: {measure.note}\n" in told
+    content = json.loads((tmp_path / "m.json").read_text(encoding="utf-8"))
+    assert content["measures"] == [measure._asdict() for measure in wanted]
+    assert content["settings"]["measured_from"] == 1.0
+
+
+def test_what_has_no_answer_is_a_dash(result, tmp_path, capsys):
+    """A vehicle of 4.27 m in a record of 1.5 m."""
+    save(result.isel(time=slice(0, 100)), tmp_path / "short.nc")
+    assert main(["measure", str(tmp_path / "short.nc")]) == 0
+    told = capsys.readouterr().out
+    assert re.search(r"ΣP⁴ over static +–", told)
+    assert "path 0 wear, 95th percentile of ΣP⁴ over static: the record is too short" in told
+    assert "dynamic load coefficient" in told
+
+
 def test_choice(file, tmp_path):
     options = ["--contact", "1", "--dof", "pitch", "--dof", "bounce", "--weighting", "Wd"]
     assert main(["measure", str(file), *options, "--output", str(tmp_path / "m.csv")]) == 0
@@ -81,13 +106,31 @@ def test_a_result_reopens_as_it_was(result, file):
 
 def test_refusals(result, file, tmp_path, capsys):
     (tmp_path / "no.nc").write_text("nothing")
-    save(result.drop_vars("contact_force"), tmp_path / "loads.nc")
+    save(result.drop_vars("contact_force"), tmp_path / "force.nc")
     save(result.drop_vars("deflection"), tmp_path / "other.nc")
+    lost = result.drop_vars(["acceleration", "motion"])
+    del lost.attrs["time_step"]
+    save(lost, tmp_path / "lost.nc")
+    for value, name, place in (("nan", "contact_force", (250, 1)), ("inf", "acceleration", (0, 1))):
+        broken = result.copy(deep=True)
+        broken[name][place] = float(value)
+        save(broken, tmp_path / f"{value}.nc")
+    save(result.assign_attrs(movingfrf="x").drop_attrs(), tmp_path / "alien.nc")
+    force = np.ones((100, 1))
+    save(mf.moving_loads(mf.RigidGuideway(), force, [0.0], speed=5.0), tmp_path / "loads.nc")
     for arguments, message in (
         ([str(tmp_path / "none.nc")], "none.nc: No such file"),
         ([str(tmp_path / "no.nc")], "no.nc: is not a netCDF file"),
-        ([str(tmp_path / "other.nc")], "other.nc: is no result of movingfrf"),
-        ([str(tmp_path / "loads.nc")], "result must be the coupled response of a vehicle"),
+        ([str(tmp_path / "other.nc")], "other.nc: lacks deflection"),
+        ([str(tmp_path / "force.nc")], "force.nc: lacks contact_force"),
+        ([str(tmp_path / "lost.nc")], "lost.nc: lacks the attribute time_step; lacks motion, acceleration"),
+        ([str(tmp_path / "nan.nc")], "nan.nc: has contact_force nan at time 0.25 s, contact 1"),
+        ([str(tmp_path / "inf.nc")], "inf.nc: has acceleration inf at time 0 s, dof pitch"),
+        ([str(tmp_path / "loads.nc")], "result must be the coupled response of a vehicle, with contact_force"),
+        ([str(tmp_path / "alien.nc")], "alien.nc: is no result of movingfrf"),
+        ([str(file), "--from", "3"], "since must lie within the record, 2.999 s at most, got 3.0 s"),
+        ([str(file), "--from", "-1"], "since must not be negative, got -1.0 s"),
+        ([str(file), "--slope", "-3"], "slope must be positive, got -3.0\n"),
         ([str(file), "--output", "m.txt"], "m.txt: must end in .json or .csv"),
         ([str(file), "--contact", "2"], "contacts must be among 0, 1, got 2"),
         ([str(file), "--dof", "nose"], "dofs must be among bounce, pitch, front_wheel, rear_wheel, got 'nose'"),

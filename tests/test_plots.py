@@ -136,3 +136,38 @@ def test_every_axis_names_quantity_and_unit(result, draw):
     assert "[" in ax.get_xlabel()
     assert "[" in ax.get_ylabel()
     assert ax.lines
+
+
+def test_curves_that_coincide_are_merged():
+    values = np.array([[1.0, 1.0, 2.0, 1.0, 2.0], [3.0, 3.0 + 1e-7, 4.0, 3.0, 4.0 + 1e-4]])
+    curves = [plots.Curve(n, f"c{n}", plots.PALETTE[n]) for n in range(5)]
+    assert plots.distinct(curves, values) == [
+        plots.Curve(0, "c0 = 2 others", plots.PALETTE[0]),
+        plots.Curve(2, "c2", plots.PALETTE[2]),
+        plots.Curve(4, "c4", plots.PALETTE[4]),
+    ]
+    assert [curve.name for curve in plots.distinct(curves[:3], values)] == ["c0 = c1", "c2"]
+
+
+def test_of_many_degrees_of_freedom_the_calm_ones_that_differ_are_drawn():
+    """Four coaches of body, pitch, bogie and two wheelsets, a little livelier from one to the next."""
+    one = np.array([0.1, 0.1, 1.3, 13.0, 13.5])
+    rms = np.concatenate([one * (1 + 0.01 * coach) for coach in range(4)])
+    units = ["m", "rad", "m", "m", "m"] * 4
+    assert plots.telling(rms, units, most=8) == [0, 1, 2, 3]
+    assert plots.telling(rms, units, most=3) == [0, 1, 2]
+    assert plots.telling(rms, units, most=20) == list(range(20))
+
+
+def test_chosen_contacts_have_colours_of_their_own(result):
+    curves = plots._curves([f"c{n}" for n in range(16)], [6, 7, 8])
+    assert len({curve.colour for curve in curves}) == 3
+    usual = {curve.column: curve.colour for curve in plots._curves([f"c{n}" for n in range(16)], None)}
+    assert curves[0].colour == usual[6]
+
+
+def test_a_phase_is_drawn_where_the_amplitude_is():
+    frequency = np.linspace(0.0, 10.0, 101)
+    frf = np.exp(-2.0 * frequency)[:, None] * np.exp(-1j * frequency[:, None])
+    phase = plots.frf_phase(frequency, frf, [0.0], axes()).lines[0].get_ydata()
+    assert np.isfinite(phase).tolist() == (np.exp(-2.0 * frequency) >= plots.FRF_RANGE).tolist()

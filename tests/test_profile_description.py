@@ -13,7 +13,7 @@ import movingfrf as mf
 from movingfrf.cli import main
 from movingfrf.profile_description import as_dict
 from movingfrf.profile_report import render
-from movingfrf.roughness.spectra import SMOOTHING_EDGES, welch
+from movingfrf.roughness.fitting import SMOOTHING_EDGES, welch
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 
@@ -31,10 +31,10 @@ def noise(seed, count=40_000):
 def test_class_and_waviness_of_a_known_road(letter, waviness):
     road = mf.realise(mf.IsoRoad.of_class(letter, waviness=waviness), length=4000.0, step=0.05, seed=3)
     (path,) = mf.describe_profile(road).paths
-    assert path.waviness == pytest.approx(waviness, abs=0.05)
+    assert path.fit.waviness == pytest.approx(waviness, abs=0.05)
     # Some 20 pieces of 400 m: lines are right to 1/√20, and a fit through hundreds of them to some percent.
-    assert path.roughness == pytest.approx(16e-6 * 4.0 ** "ABCDEF".index(letter), rel=0.1)
-    assert path.road_class == letter or waviness != 2.0
+    assert path.fit.roughness == pytest.approx(16e-6 * 4.0 ** "ABCDEF".index(letter), rel=0.1)
+    assert path.fit.road_class == letter or waviness != 2.0
 
 
 @pytest.mark.parametrize("count", [999, 1000, 20_001, 30_000])
@@ -76,11 +76,14 @@ def test_coherence_of_paths_with_a_known_part_in_common(shared, expected):
 
 def test_equal_paths_are_coherent_and_one_path_has_no_coherence():
     road = mf.Profile(0.1 * np.arange(5000), np.stack([noise(0, 5000)] * 2, axis=1))
-    assert mf.describe_profile(road).coherence[1] == pytest.approx(1.0)
+    # Equal but for 10⁻⁹ of it: no longer the same path, and still as coherent as numbers can be.
+    near = mf.Profile(road.stations, road.columns * [1.0, 1 + 1e-9])
+    assert mf.describe_profile(near).coherence[1] == pytest.approx(1.0)
+    assert mf.describe_profile(road).coherence is None
     assert mf.describe_profile(mf.selected(road, paths=[0])).coherence is None
     flat = mf.Profile(0.1 * np.arange(5000), np.zeros((5000, 2)))
     assert mf.describe_profile(flat).coherence is None
-    assert mf.describe_profile(flat).paths[0].road_class == ""
+    assert mf.describe_profile(flat).paths[0].fit.road_class == ""
 
 
 def test_roughness_index_of_waves_of_ten_metres():
@@ -104,6 +107,10 @@ def test_what_looks_odd_is_told():
     assert re.match(r"The elevation does not change at all over (29\.9|30) m", level)
     assert "from 200 m on" in level
     assert found.paths[0].resolution == 1e-4
+    z[5000:5200], z[6000:6250] = z[5000], z[6000]
+    _, levels = mf.describe_profile(mf.Profile(stations, z)).findings
+    for words in ("m from 200 m on", "m from 500 m on", "m from 600 m on"):
+        assert words in levels
     smooth = mf.describe_profile(mf.Profile(stations, noise(0, 8000)))
     assert smooth.findings == ()
     assert smooth.paths[0].resolution == 0.0
@@ -144,7 +151,23 @@ def test_of_many_paths_some_are_described():
     found = mf.describe_profile(road)
     assert [path.number for path in found.paths] == [0, 4, 8, 11, 15, 19]
     assert found.paths[2].highest == road.elevation[:, 8].max()
-    assert "6 of 20 paths are described." in found.findings
+    assert found.scope == "6 of 20 paths are described"
+    assert not any("described" in finding for finding in found.findings)
+    page = render(found, understood="", title="x")
+    assert "6 of 20 paths are described." in page
+    assert "6 of them described" in page
+
+
+def test_equal_paths_are_said_and_described_once():
+    first, other = noise(0), noise(1)
+    first[20] += 0.2
+    found = mf.describe_profile(
+        mf.Profile(0.1 * np.arange(first.size), np.stack([first, other, first, first], axis=1))
+    )
+    assert [path.number for path in found.paths] == [0, 1]
+    assert found.findings[0] == "Paths 0, 2 and 3 are equal: path 0 is described for all."
+    assert sum("stands out" in finding for finding in found.findings) == 1
+    assert found.scope == "2 of 4 paths are described"
 
 
 def test_the_page_is_complete_in_itself_and_always_the_same():
@@ -162,14 +185,46 @@ def test_the_page_is_complete_in_itself_and_always_the_same():
     assert len(page) < 2e6
 
 
+def test_elevations_in_millimetres_are_rougher_than_roads_are():
+    road = mf.realise(mf.IsoRoad.of_class("A"), length=200.0, seed=0)
+    assert mf.describe_profile(road).findings == ()
+    wrong = mf.describe_profile(mf.Profile(road.stations, 1e3 * road.elevation))
+    assert any(re.match("Rougher than roads are, IRI .* are the elevations in metres?", f) for f in wrong.findings)
+    roughest = mf.realise(mf.IsoRoad.of_class("G"), length=200.0, seed=0)
+    assert not any("ougher" in finding for finding in mf.describe_profile(roughest).findings)
+
+
+@needs("belgian_block.crg")
+def test_ten_metres_have_no_class():
+    block = mf.read_profile(DATA / "belgian_block.crg", across=[0.75]).profile
+    found = mf.describe_profile(block)
+    assert found.paths[0].fit.road_class == ""
+    assert any(finding.startswith("No class: the profile is level, or too short") for finding in found.findings)
+    assert as_dict(found)["paths"][0]["iso_8608_class"] is None
+    render(found, understood="", title="x")
+
+
 @needs("utia_profile.txt")
 def test_a_surveyed_road():
     """Class A, whole-length IRI near 3.3, quantised to 0.1 mm: what is known of it."""
     for name, about in (("utia_profile.txt", 0.01), ("utia_profile_irregular.txt", 0.05)):
         (path,) = mf.describe_profile(mf.read_profile(DATA / name).profile).paths
-        assert path.road_class == "A"
+        assert path.fit.road_class == "A"
         assert path.index == pytest.approx(3.335, rel=about)
         assert path.resolution == 1e-4
+
+
+@needs("utia_profile.txt")
+@pytest.mark.parametrize("step", [0.05, 0.1])
+def test_a_surveyed_road_is_the_same_road_at_a_shorter_step(step):
+    """A line through 40 bands that scatter by 0.4 in the logarithm, over a range of rms 1.2: w to 0.4/√40/1.2."""
+    road = mf.read_profile(DATA / "utia_profile.txt").profile
+    (before,), (after,) = (mf.describe_profile(p).paths for p in (road, mf.resampled(road, step=step)))
+    assert before.fit.waviness == pytest.approx(2.7, abs=0.05)
+    assert after.fit.road_class == "A"
+    assert after.fit.waviness == pytest.approx(before.fit.waviness, abs=3 * 0.4 / np.sqrt(40) / 1.2)
+    # Stations every 0.25 m end at 2 cycle/m; a cubic spline begins to lose at 0.4 of the inverse of its step.
+    assert 0.25 * 4 < after.fit.band[1] < 2.0
 
 
 @needs("IRI_737b.mat")
@@ -243,15 +298,21 @@ def test_convert_prepares_on_request_and_protects_what_exists(road, tmp_path, ca
             "--across must be numbers with commas between them, got '0.7,x'",
         ),
         (["profile", "{road}", "--columns", "0,7"], "there is no column 7"),
-        (["profile", "{road}", "--high-pass", "1000"], "high_pass must lie between"),
+        (["profile", "{road}", "--high-pass", "1000"], "--high-pass must lie between"),
+        (["profile", "{road}", "--detrend", "1.5"], "--detrend must be a whole number, got 1.5"),
+        (["profile", "{road}", "--detrend", "7"], "--detrend must be at most 5, got 7"),
+        (["convert", "{road}", "{folder}/new/road.gpx"], "{folder}/new/road.gpx: gpx is only read, not written"),
         (["convert", "{road}", "{folder}/road.xyz"], "its ending does not tell the format"),
-        (["convert", "{road}", "{folder}/deep/road.crg"], "needs the lateral positions of two paths"),
+        (
+            ["convert", "{road}", "{folder}/deep/road.crg"],
+            "{folder}/deep/road.crg: an OpenCRG file needs the lateral positions of two paths",
+        ),
     ],
 )
 def test_what_the_commands_refuse(road, tmp_path, capsys, words, message):
     before = sorted(tmp_path.rglob("*"))
     assert main([word.format(road=road, folder=tmp_path) for word in words]) == 2
-    assert message in capsys.readouterr().err
+    assert message.format(folder=tmp_path) in capsys.readouterr().err
     assert sorted(tmp_path.rglob("*")) == before
 
 

@@ -11,7 +11,7 @@ import xarray as xr
 import movingfrf as mf
 from movingfrf.cli import main
 from movingfrf.random_measures import random_measures
-from movingfrf.random_report import paths, render
+from movingfrf.random_report import drawing_frequencies, paths, render
 from tests.helpers import DAMPED, FULL_TRUCK
 from tests.test_scenario import LOADS, TEMPLATE
 
@@ -80,7 +80,7 @@ def test_a_value_that_is_refused(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("coherence", "words"),
     [
-        (1, "one road under all wheels"),
+        (1, "one road under all wheels: left and right see the same, and nothing makes the vehicle roll"),
         (0.0, "paths without anything in common"),
         (0.5, "coherence 0.5"),
         (mf.IsotropicCoherence(), "coherence IsotropicCoherence(waviness=2.0)"),
@@ -121,5 +121,31 @@ def test_report_of_what_does_not_move():
     result = mf.random_response(mf.RigidGuideway(), car, mf.IsoRoad.of_class("A"), speed=10.0, coherence=1.0)
     assert not result.deflection_rms.any()
     assert np.isnan(result.deflection_crossing_rate).all()
-    page = render(result, random_measures(result), title="rigid")
+    found = random_measures(result)
+    page = render(result, found, title="rigid")
     assert "<td>–</td>" in page
+    (felt,) = [m for m in found if m.quantity == "roll acceleration" and m.name.startswith("weighted")]
+    assert felt.value == 0.0
+    # Left and right do the same: one curve stands for both.
+    assert "front left wheel = front right wheel" in page
+
+
+def test_a_report_names_contacts_and_keeps_weightings_apart():
+    """Contacts by name and place; Wk over translations only; what never happens as such, not with three digits."""
+    car = mf.full_car(**FULL_TRUCK)
+    spectrum = mf.IsoRoad.of_class("A", band=(0.1, 1.0))
+    result = mf.random_response(mf.RigidGuideway(), car, spectrum, speed=10.0, coherence=0.5)
+    assert 0 < result.lift_off_rate.values.max() < 1e-12
+    drawn = mf.random_response(
+        mf.RigidGuideway(), car, spectrum, speed=10.0, coherence=0.5, frequency=drawing_frequencies(result)
+    )
+    page = render(result, random_measures(result), title="car", drawn=drawn)
+    assert re.search(r"contact 0 \(front left\) at \+[\d.]+ m, path 0</th>", page)
+    assert page.count("< 10⁻¹²".replace("<", "&lt;")) == 8  # rate and share, four contacts
+    translations, rotations = re.findall(r"<table>(.*?)</table>", page, re.DOTALL)[-2:]
+    assert "(Wk)" in translations
+    assert "(We)" not in translations
+    assert "(We)" in rotations
+    assert "pitch" in rotations
+    assert set(result.frequency.values) <= set(drawn.frequency.values)
+    assert np.diff(np.log(drawn.frequency.values)).max() < 0.01

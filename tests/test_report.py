@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
+from movingfrf import illustrations
 from movingfrf.metrics.basic import measures
 from movingfrf.report import render
 from movingfrf.wording import number
@@ -86,7 +87,7 @@ def cells(page):
     rows = {}
     for name, body in re.findall(r'<th scope="row">(.*?)</th>(.*?)</tr>', page, re.DOTALL):
         text = re.sub(r"<[^>]*>", "", name).split(" at ")[0]
-        rows[text] = [value.split(" ")[0] for value in re.findall(r"<td>(.*?)</td>", body)]
+        rows.setdefault(text, []).extend(value.split(" ")[0] for value in re.findall(r"<td>(.*?)</td>", body))
     return rows
 
 
@@ -103,6 +104,40 @@ def test_every_measure_appears_in_engineering_units(three, page):
         place = measure.quantity.rsplit(" ", 1)[0]
         shown = [float(value.replace("−", "-")) for value in rows[place] if "×" not in value]
         assert np.isclose(shown, scale * measure.value, rtol=6e-4, atol=0.0).any(), measure
+
+
+def test_tables_are_narrow_and_their_columns_have_one_unit(page):
+    """Five numbers beside a name fit on a sheet and into a window of 1100 px."""
+    tables = re.findall(r"<table>(.*?)</table>", page, re.DOTALL)
+    assert len(tables) == 4  # forces, deflections, accelerations, angular accelerations
+    assert all(table.count('scope="col"') <= 6 for table in tables)
+    assert not re.search(r"<td>[^<]* (m|rad)/s²</td>", page)
+    assert "rad/s²" in tables[3]
+    assert "rad" not in tables[2]
+
+
+def test_nearby_offsets_and_neighbours(three):
+    """Wheels at 2, 0.5 and −2.5 m: 1.5 m, and 3 m as the least that is twice as long."""
+    assert illustrations._contact_offsets(three) == [0.0, 1.5, -1.5, 3.0, -3.0]
+    assert illustrations._neighbours(three, 0) == [0, 1]
+    assert illustrations._neighbours(three, 2) == [1, 2]
+    assert illustrations._contact_offsets(drive(duration=0.1)) == [0.0]
+
+
+def test_the_moving_frf_is_drawn_as_far_as_the_road_moves():
+    """Not to a truncation far beyond: a footprint takes short waves away, and the soft road the rest."""
+    frequency = np.linspace(0.0, 500.0, 501)
+
+    def frf(_frequency, offsets):
+        return np.ones((len(_frequency), len(offsets)), complex)
+
+    result = drive(duration=2.0).assign_attrs(truncation=400.0)
+    time = result.time.values
+    result.deflection[:] = np.sin(2 * np.pi * 50.0 * time)[:, None]
+    assert illustrations._frf_end(result, frf) == pytest.approx(1.3 * 50.0, rel=0.1)
+    assert illustrations._frf_end(result.assign_attrs(truncation=35.0), frf) == pytest.approx(1.3 * 35.0)
+    result.deflection[:] = 1e-3
+    assert illustrations._frf_end(result, frf) == frequency[-1]
 
 
 def test_text_is_escaped(page):
@@ -138,10 +173,27 @@ def test_equal_input_gives_equal_text_whatever_matplotlib_is_set_to():
     assert_self_contained(before)
 
 
+def on_track(spectrum, step):
+    profile = mf.realise(spectrum, length=410.0, step=step, seed=0)
+    return mf.simulate(mf.RigidGuideway(), CAR, profile, speed=40.0, duration=10.0, time_step=5e-3)
+
+
+def test_roughness_is_fitted_where_it_has_content():
+    """Track whose waves end at 3 m, which a fit to 2.83 cycle/m takes for a waviness beyond 10."""
+    result = on_track(mf.GermanTrack.of_class("low"), 0.05)
+    figures = illustrations.of_coupled(result, mf.RigidGuideway())
+    fitted = re.search(r"dashed, over 0.0\d+ to (0.\d+) cycle/m\)", figures[0].caption)
+    assert 0.2 < float(fitted[1]) < 0.34
+    assert figures[0].heading == "Roughness"
+    known = illustrations.of_coupled(result.assign_attrs(spectrum="German track"), mf.RigidGuideway())
+    assert "It was made from a spectrum, so none is fitted: German track." in known[0].caption
+    assert "class A" not in known[0].caption
+
+
 def test_flat_road_and_a_record_of_two_samples():
     result = drive(rough=False, duration=2e-3)
     page = render(result, guideway=mf.RigidGuideway())
-    assert "The road is flat" in page
+    assert "no class is fitted: the profile is level" in page
     assert "The road is rigid" in page
     assert_ids_unique_and_defined(page)
 

@@ -252,3 +252,15 @@ def test_keys_are_the_keywords_of_python():
         parameters = inspect.signature(make).parameters
         assert "interval" in parameters, kind
         assert not {"length", "start", "given"} & parameters.keys(), kind
+
+
+@pytest.mark.parametrize("kind", ["german_track", "iso_road"])
+def test_what_a_road_was_made_from_is_told_and_not_fitted(kind):
+    from movingfrf.describe import described
+
+    scenario = parse_scenario(f'{CAR}[roughness]\nkind = "{kind}"\n{SPECTRUM_KINDS[kind][0]}')
+    lines = dict(dict(described(scenario))["Roughness"])
+    assert lines["source"] == scenario.road.description
+    assert lines["fitted spectrum"] == "none: it was made from the spectrum above"
+    assert not any("class" in name for name in lines)
+    assert scenario.run().attrs["spectrum"] == str(scenario.road.spectrum)

@@ -72,6 +72,21 @@ def nearest(word: str, known: Iterable[str]) -> str:
     return f" (did you mean {close[0]!r}?)" if close else ""
 
 
+def with_unit(number: float, unit: str) -> str:
+    """Write a number with its unit; of what has no dimension, the number alone."""
+    return f"{number!r}" if unit == "1" else f"{number!r} {unit}"
+
+
+def in_brackets(words: str, unit: str) -> str:
+    """Write words with a unit in brackets behind them; without a dimension, the words alone."""
+    return words if unit == "1" else f"{words} [{unit}]"
+
+
+def option(name: str) -> str:
+    """Name an option as it is typed in Python and in a scenario, and as on the command line."""
+    return f"`{name}` (on the command line --{name.replace('_', '-')})"
+
+
 def finite(value: Any) -> Any:
     """Replace numbers that are not finite by None, in dicts and lists too: JSON knows no infinity."""
     if isinstance(value, dict):
@@ -98,16 +113,18 @@ class Checks:
     def finite(self, name: str, value: Any, unit: str, condition: str = "a finite number") -> float:
         """Demand a real, finite number of credible magnitude."""
         if not isinstance(value, Real) or isinstance(value, bool):
-            self.refuse(name, f"must be {condition} [{unit}], got {shown(value)}")
+            self.refuse(name, f"must be {in_brackets(condition, unit)}, got {shown(value)}")
             return float("nan")
         try:
             number = float(value)
         except OverflowError:
             number = float("inf")
         if not np.isfinite(number):
-            self.refuse(name, f"must be {condition}, got {number!r} {unit}")
+            self.refuse(name, f"must be {condition}, got {with_unit(number, unit)}")
         elif abs(number) > LARGEST:
-            self.refuse(name, f"must be of a credible magnitude, at most {LARGEST:g}, got {number!r} {unit}")
+            self.refuse(
+                name, f"must be of a credible magnitude, at most {LARGEST:g}, got {with_unit(number, unit)}"
+            )
         else:
             return number
         return float("nan")
@@ -116,9 +133,11 @@ class Checks:
         """Demand a number above zero."""
         number = self.finite(name, value, unit, "a positive number")
         if number <= 0:
-            self.refuse(name, f"must be positive, got {number!r} {unit}")
+            self.refuse(name, f"must be positive, got {with_unit(number, unit)}")
         elif number < SMALLEST:
-            self.refuse(name, f"must be of a credible magnitude, at least {SMALLEST:g}, got {number!r} {unit}")
+            self.refuse(
+                name, f"must be of a credible magnitude, at least {SMALLEST:g}, got {with_unit(number, unit)}"
+            )
         return number
 
     def positive_or_infinite(self, name: str, value: Any, unit: str) -> float:
@@ -131,7 +150,7 @@ class Checks:
         """Demand a number of at least zero."""
         number = self.finite(name, value, unit, "a number of at least zero")
         if number < 0:
-            self.refuse(name, f"must not be negative, got {number!r} {unit}")
+            self.refuse(name, f"must not be negative, got {with_unit(number, unit)}")
         return number
 
     def whole(self, name: str, value: Any, *, least: int = 0) -> int:
@@ -157,7 +176,7 @@ class Checks:
         except (TypeError, ValueError, OverflowError):
             numbers = False
         if not numbers:
-            self.refuse(name, f"must be an array of numbers [{unit}], got {shown(value)}")
+            self.refuse(name, f"must be {in_brackets('an array of numbers', unit)}, got {shown(value)}")
             return np.full([n or 1 for n in shape], np.nan)
         wanted = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
         if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
@@ -168,7 +187,7 @@ class Checks:
             place = tuple(int(i) for i in bad[0])
             self.refuse(
                 name,
-                f"must be finite and at most {LARGEST:g} {unit} throughout, got {float(array[place])!r} "
+                f"must be finite and at most {with_unit(LARGEST, unit)} throughout, got {float(array[place])!r} "
                 f"at index {place[0] if len(place) == 1 else place}",
             )
         array.flags.writeable = False
@@ -197,7 +216,7 @@ class Checks:
         try:
             first, second = value
         except (TypeError, ValueError):
-            self.refuse(name, f"must be two numbers [{unit}], got {shown(value)}")
+            self.refuse(name, f"must be {in_brackets('two numbers', unit)}, got {shown(value)}")
             return (float("nan"), float("nan"))
         check = self.finite if signed else self.positive if positive else self.not_negative
         check = self.positive_or_infinite if infinite else check

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 import signal
 import sys
+import textwrap
 import time
 import warnings
 from dataclasses import dataclass
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeVar
@@ -17,11 +20,11 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from movingfrf._checks import SolveError, ValidityWarning
+from movingfrf._checks import ParameterError, SolveError, ValidityWarning
 from movingfrf.version import VERSION
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping, Sequence
 
     import xarray as xr
 
@@ -36,6 +39,9 @@ DONE, DEFECT, REFUSED, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 
 # Raised digits and minus signs → as they are typed.
 TYPED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
+
+# Columns of the output where there is no terminal; letters of a head on one line, at least; gap between columns.
+PIPED, HEAD, GAP = 160, 12, 2
 
 # A computation shorter than this shows no progress [s].
 PATIENCE = 1.0
@@ -245,7 +251,7 @@ def random(
         stages.report("loading", 0.0)
         from movingfrf.output import replacing, save, summary
         from movingfrf.random_measures import random_measures
-        from movingfrf.random_report import paths, render
+        from movingfrf.random_report import drawing_frequencies, paths, render
         from movingfrf.random_vibration import random_response
         from movingfrf.scenario import read_scenario
 
@@ -263,7 +269,8 @@ def random(
         with replacing(folder) as temporary, warnings.catch_warnings():
             # Findings are printed with the results; no need to warn of them as well.
             warnings.simplefilter("ignore", ValidityWarning)
-            result = random_response(
+            response = partial(
+                random_response,
                 scenario.guideway,
                 scenario.vehicle,
                 road.spectrum,
@@ -271,13 +278,15 @@ def random(
                 coherence=road.coherence,
                 exposure=exposure,
                 progress=stages.report,
-            ).assign_attrs(scenario=scenario.text)
+            )
+            result = response().assign_attrs(scenario=scenario.text)
+            drawn = response(frequency=drawing_frequencies(result))
             found = random_measures(result, slope=slope)
             save(result, temporary / "random.nc")
             (temporary / "summary.json").write_text(summary(result, found), encoding="utf-8")
             stages.report("report.html", 0.0)
             title = f"{scenario.name}: random road"
-            page = render(result, found, title=title, scenario=scenario.text)
+            page = render(result, found, title=title, scenario=scenario.text, drawn=drawn)
             (temporary / "report.html").write_text(page, encoding="utf-8")
     console.print(f"Spectrum: {result.attrs['spectrum']}; {paths(result)}\n", soft_wrap=True)
     _print_result(console, result, found)
@@ -294,11 +303,13 @@ def measure(
     dof: list[str] | None = None,
     weighting: str = "Wk",
     slope: float | None = None,
+    since: Annotated[float, Parameter(name="--from")] = 0.0,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
 ) -> None:
     """Measure an earlier result: comfort, load on the road, lost contact, fatigue.
 
-    Prints every measure with its unit and the standard or source that defines it.
+    Prints every measure with its unit and the standard or source that defines it, and below them what ISO 2631-1
+    makes of the degrees of freedom that were named.
 
     Parameters
     ----------
@@ -307,12 +318,14 @@ def measure(
     contact
         Number of a contact; again for another. All by default.
     dof
-        Name of a degree of freedom; again for another. All by default.
+        Name of a degree of freedom, where people are; again for another. All by default.
     weighting
         Frequency weighting of translations: Wk (vertical), Wd (horizontal), Wb (rail), Wf (motion sickness), Wc,
         We, Wj. Rotations have We.
     slope
         Exponent of an S-N curve; adds the steady amplitude that damages as much as each contact force.
+    since
+        Leave out the first seconds, in which the vehicle runs in.
     output
         A file to write the measures to as well: .json or .csv.
     """
@@ -322,20 +335,30 @@ def measure(
     if output is not None and output.suffix not in (".json", ".csv"):
         raise ValueError(f"{output}: must end in .json or .csv")
     result = load(file)
-    found = assess(result, contacts=contact, dofs=dof, weighting=weighting, slope=slope)
+    found = assess(result, contacts=contact, dofs=dof, weighting=weighting, slope=slope, since=since)
     console = _console()
     table = Table(box=None, pad_edge=False)
     for heading, justify in (("", "left"), ("value", "right"), ("unit", "left"), ("by", "left")):
-        table.add_column(heading, justify=justify, no_wrap=True)  # type: ignore[arg-type]
+        table.add_column(heading, justify=justify, no_wrap=True, overflow="fold")  # type: ignore[arg-type]
     above = ""
     for taken in found:
         if taken.quantity != above:
             table.add_row(taken.quantity, style="bold")
-        table.add_row(f"  {taken.name}", f"{taken.value:.4g}", taken.units, taken.standard)
+        units = "" if taken.units == "1" else taken.units
+        table.add_row(f"  {taken.name}", _cell(taken), units, taken.standard)
         above = taken.quantity
     console.print(table)
+    notes = [f"{taken.quantity}, {taken.name}: {taken.note}" for taken in found if taken.note]
+    if notes:
+        console.print("\nNotes", style="bold")
+    for note in notes:
+        console.print(f"- {note}", soft_wrap=True)
     if output is not None:
-        text = measures_as_csv(found) if output.suffix == ".csv" else summary(result, found)
+        text = (
+            measures_as_csv(found)
+            if output.suffix == ".csv"
+            else summary(result.assign_attrs(measured_from=since), found)
+        )
         output.write_text(text, encoding="utf-8")
         console.print(f"wrote {output}", soft_wrap=True)
 
@@ -470,7 +493,7 @@ class ProfileOptions:
     spike
         Replace elevations further than this from the median of 1 m around them [m].
     detrend
-        Take out a polynomial of this degree: 0 the mean, 1 a straight line.
+        Take out a polynomial of this degree, a whole number: 0 the mean, 1 a straight line.
     high_pass
         Take out waves longer than this [m].
     step
@@ -490,17 +513,28 @@ class ProfileOptions:
     first: float | None = None
     last: float | None = None
     spike: float | None = None
-    detrend: int | None = None
+    # A float, since a command line's 1.5 would be rounded on the way to an int.
+    detrend: float | None = None
     high_pass: float | None = None
     step: float | None = None
     repeat_to: float | None = None
     mirror_to: float | None = None
 
     def profile(self, file: Path) -> ReadProfile:
-        """Read a file and do what was asked for."""
+        """Read a file and do what was asked for; a refused option is named as it was typed."""
+        try:
+            return self._profile(file)
+        except ParameterError as error:
+            raise ParameterError(
+                [fault._replace(name=f"--{fault.name.replace('_', '-')}") for fault in error.faults]
+            ) from None
+
+    def _profile(self, file: Path) -> ReadProfile:
         from movingfrf.roughness.files import ReadProfile, read_profile
         from movingfrf.roughness.preparation import prepared
 
+        if self.detrend is not None and not self.detrend.is_integer():
+            raise ValueError(f"--detrend must be a whole number, got {self.detrend:g}")
         columns = [int(word) if word.isdecimal() else word for word in _words(self.columns)]
         found, understood = read_profile(
             file,
@@ -516,7 +550,7 @@ class ProfileOptions:
             first=self.first,
             last=self.last,
             spike=self.spike,
-            detrend=self.detrend,
+            detrend=None if self.detrend is None else int(self.detrend),
             high_pass=self.high_pass,
             step=self.step,
             repeat_to=self.repeat_to,
@@ -570,9 +604,10 @@ def profile(
                 for name, text in texts.items():
                     (temporary / name).write_text(text, encoding="utf-8")
             written = [output / name for name in texts]
-    console.print(f"{understood}\n", soft_wrap=True)
+    console.print(understood, soft_wrap=True)
     for sentence in read.steps:
         console.print(f"- {sentence}", soft_wrap=True)
+    console.print()
     for table in tables(found):
         _print_table(console, table)
     _print_findings(console, list(found.findings))
@@ -610,14 +645,15 @@ def convert(
     with stages:
         stages.report("reading", 0.0)
         from movingfrf.output import replacing
-        from movingfrf.roughness.files import write_profile
+        from movingfrf.roughness.files import writer
 
+        write = writer(target, encoding=encoding)
         if target.exists() and not force:
             raise ValueError(f"{target} exists; choose another name, or --force to replace it")
         read, understood = options.profile(file)
         stages.report("writing", 0.0)
         with replacing(target.parent) as temporary:
-            write_profile(read, temporary / target.name, encoding=encoding)
+            write(read, temporary / target.name)
             written = sorted(part.name for part in temporary.iterdir())
     console.print(understood, soft_wrap=True)
     for sentence in read.steps:
@@ -641,7 +677,10 @@ def _numbers(listed: str | None, option: str, kind: Callable[[str], Number]) -> 
 
 def _console() -> Console:
     """Console that prints names as they are, whatever brackets or colons they hold."""
-    return Console(highlight=False, markup=False, emoji=False)
+    console = Console(highlight=False, markup=False, emoji=False)
+    if not console.is_terminal:
+        console.width = PIPED
+    return console
 
 
 class _Stages:
@@ -695,19 +734,57 @@ def _print_result(console: Console, result: xr.Dataset, found: list[Measure]) ->
     quantities: dict[str, list[Measure]] = {}
     for measure in found:
         quantities.setdefault(measure.quantity, []).append(measure)
-    tables: dict[tuple[tuple[str, str], ...], Table] = {}
+    tables: dict[tuple[str, ...], dict[str, list[str]]] = {}
     for quantity, taken in quantities.items():
-        columns = tuple((measure.name, measure.units) for measure in taken)
-        if columns not in tables:
-            tables[columns] = Table(box=None, pad_edge=False)
-            tables[columns].add_column("", no_wrap=True)
-            for name, units in columns:
-                tables[columns].add_column(f"{name} [{units}]", justify="right")
-        tables[columns].add_row(quantity, *(f"{measure.value:.4g}" for measure in taken))
-    for table in tables.values():
+        heads = tuple(_head(measure.name, measure.units) for measure in taken)
+        tables.setdefault(heads, {})[quantity] = [_cell(measure) for measure in taken]
+    for heads, rows in tables.items():
+        _print_columns(console, "", heads, rows)
+    _print_findings(console, [finding["message"] for finding in json.loads(result.attrs["findings"])])
+
+
+def _head(name: str, units: str) -> str:
+    """Head of a column; what has no dimension has no unit."""
+    return name if units in ("", "1") else f"{name} [{units}]"
+
+
+def _cell(measure: Measure) -> str:
+    """Write a number as it is typed, a dash where there is none."""
+    from movingfrf.wording import NEVER, is_never
+
+    if math.isnan(measure.value):
+        return "–"
+    return f"< {NEVER:g}" if is_never(measure.value, measure.units) else f"{measure.value:.4g}"
+
+
+def _print_columns(console: Console, corner: str, heads: Sequence[str], rows: Mapping[str, Sequence[str]]) -> None:
+    """Print a table; where a console is too narrow for its columns, in pieces below each other."""
+    columns: list[tuple[str, list[str]]] = []
+    pieces: list[list[int]] = [[]]
+    room = console.width - max(map(len, [corner, *rows]))
+    left = room
+    bodies = list(zip(*rows.values(), strict=True))
+    roomy = sum(GAP + max(map(len, [head, *cells])) for head, cells in zip(heads, bodies, strict=True)) <= room
+    for number, cells in enumerate(bodies):
+        # Where room is short a head may take more lines than one, but no word of it breaks.
+        widest = max(HEAD, *map(len, [*heads[number].split(), *cells]))
+        lines = [heads[number]] if roomy else textwrap.wrap(heads[number], widest)
+        columns.append(("\n".join(lines), list(cells)))
+        width = GAP + max(map(len, [*lines, *cells]))
+        if pieces[-1] and width > left:
+            pieces.append([])
+            left = room
+        pieces[-1].append(number)
+        left -= width
+    for piece in pieces:
+        table = Table(box=None, pad_edge=False)
+        table.add_column(corner, no_wrap=True, overflow="fold")
+        for number in piece:
+            table.add_column(columns[number][0], justify="right", no_wrap=True)
+        for at, name in enumerate(rows):
+            table.add_row(name, *(columns[number][1][at] for number in piece))
         console.print(table)
         console.print()
-    _print_findings(console, [finding["message"] for finding in json.loads(result.attrs["findings"])])
 
 
 def _print_sections(console: Console, sections: list[tuple[str, list[tuple[str, str]]]]) -> None:
@@ -728,15 +805,10 @@ def _print_findings(console: Console, messages: list[str]) -> None:
 def _print_table(console: Console, table: TableForReading) -> None:
     """Print a table as the report has it."""
     console.print(table.caption, style="bold")
-    printed = Table(box=None, pad_edge=False)
-    printed.add_column(table.corner, no_wrap=True)
-    for column in table.columns:
-        printed.add_column(f"{column.name} [{column.units}]" if column.units else column.name, justify="right")
-    for row in table.rows:
-        # Powers of ten as they are typed, since a console breaks lines at spaces.
-        printed.add_row(row.name, *(cell.replace(" × 10", "e").translate(TYPED) for cell in row.cells))
-    console.print(printed)
-    console.print()
+    heads = [_head(column.name, column.units) for column in table.columns]
+    # Powers of ten as they are typed, since a console has no raised digits to speak of.
+    rows = {row.name: [cell.replace(" × 10", "e").translate(TYPED) for cell in row.cells] for row in table.rows}
+    _print_columns(console, table.corner, heads, rows)
 
 
 def main(arguments: list[str] | None = None) -> int:

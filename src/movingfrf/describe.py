@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from movingfrf import wording
 from movingfrf._checks import FloatArray
 from movingfrf.coupling import joined, steady_state
 from movingfrf.findings import near_critical
-from movingfrf.roughness.profiles import Profile
-from movingfrf.roughness.spectra import fit_iso, iso_class, welch
+from movingfrf.roads import Road
+from movingfrf.roughness.fitting import fit_iso, welch
 from movingfrf.scenario import Scenario
 from movingfrf.simulation import BYTES_PER_SAMPLE, spectral_grid
 from movingfrf.spectral import SpectralGrid
@@ -45,7 +46,7 @@ def described(scenario: Scenario) -> list[Section]:
         vehicle, _, vibrations = described_vehicle(scenario.vehicle)
         sections += [vehicle, ("Contacts in steady travel", _steady_contacts(scenario)), vibrations]
     if scenario.road is not None:
-        sections.append(("Roughness", _roughness(scenario.road.profile, scenario.road.description)))
+        sections.append(("Roughness", _roughness(scenario.road)))
     if scenario.loads is not None:
         sections.append(("Loads", _loads(scenario)))
     return [*sections, ("Run", _run(scenario))]
@@ -181,26 +182,32 @@ def _alike(group: Sequence[Mode]) -> str:
     )
 
 
-def _roughness(profile: Profile, description: str) -> list[tuple[str, str]]:
+def _roughness(road: Road) -> list[tuple[str, str]]:
+    profile = road.profile
     stations = profile.stations
     elevation = np.asarray(profile.elevation)
     lines = [
-        ("source", description),
+        ("source", road.description),
         ("stations", f"{stations.size} from {stations[0]:.6g} m to {stations[-1]:.6g} m"),
         ("elevation", f"{elevation.min():.4g} m to {elevation.max():.4g} m"),
     ]
+    if road.spectrum is not None:
+        return [*lines, ("fitted spectrum", "none: it was made from the spectrum above")]
     step = float(np.median(np.diff(stations)))
-    for path in range(profile.paths):
-        uniform = profile.along(path)(np.arange(stations[0], stations[-1], step))
-        spectrum = welch(uniform, step)
-        roughness, waviness = fit_iso(*spectrum)
-        if np.isfinite(roughness):
-            at_two, _ = fit_iso(*spectrum, waviness=2.0)
-            of = f" of path {path}" if profile.paths > 1 else ""
-            lines += [
-                (f"fitted spectrum{of}", f"{roughness:.3g} m³ at 0.1 cycle/m with waviness {waviness:.2f}"),
-                (f"ISO 8608 class{of}", f"{iso_class(at_two)} ({at_two:.3g} m³ at 0.1 cycle/m with waviness 2)"),
-            ]
+    for paths in profile.alike:
+        fit = fit_iso(*welch(profile.along(paths[0])(np.arange(stations[0], stations[-1], step)), step))
+        of = "" if profile.paths == 1 else f" of {wording.paths(paths)}"
+        if fit.reason:
+            lines.append((f"ISO 8608 class{of}", f"none: {fit.reason}"))
+            continue
+        at_two = f"{fit.road_class} ({fit.roughness_at_two:.3g} m³ at 0.1 cycle/m with waviness 2)"
+        lines += [
+            (
+                f"fitted spectrum{of}",
+                f"{fit.roughness:.3g} m³ at 0.1 cycle/m with waviness {fit.waviness:.2f}, over {fit.covered}",
+            ),
+            (f"ISO 8608 class{of}", f"{at_two}; {fit.doubt}" if fit.doubt else at_two),
+        ]
     return lines
 
 

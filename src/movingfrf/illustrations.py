@@ -13,7 +13,7 @@ import numpy as np
 from movingfrf import plots, wording
 from movingfrf._checks import ComplexArray, FloatArray
 from movingfrf.guideways.base import Guideway
-from movingfrf.roughness.spectra import fit_iso, iso_class
+from movingfrf.roughness.fitting import fit_iso
 from movingfrf.wording import number
 
 if TYPE_CHECKING:
@@ -34,7 +34,11 @@ FRF_SMALL = 0.01
 # Distance of the line on which it is evaluated from the real axis, where an undamped road is infinite.
 FRF_DECAY = 1e-6
 
-MOST_DOFS = 8
+# Degrees of freedom with panels of their own, and contacts in one figure around the peak.
+MOST_DOFS, MOST_NEIGHBOURS = 8, 2
+
+# Which degrees of freedom are left out where there are many.
+MOVES_ALIKE = " Left out are those with an rms within a tenth of one that is drawn, then the liveliest."
 
 # The look of the figures, on top of matplotlib's defaults and never on top of a user's own settings.
 STYLE: dict[Any, Any] = {
@@ -172,39 +176,38 @@ def _road_figure(result: xr.Dataset) -> Illustration:
     plots.legend_above(plots.roughness(result, above))
     plots.legend_above(plots.roughness_spectrum(result, below))
     caption = (
-        "The road under the foremost contact of each path: elevation over distance, and its spectrum among the "
+        "What the foremost contact of each path rolls over: elevation over distance, and its spectrum among the "
         "centre lines of the ISO 8608 classes A (smooth) to H (rough). " + _class_words(result)
     )
-    return illustrated("road", "Road surface", caption, figure)
+    return illustrated("road", "Roughness", caption, figure)
 
 
 def _class_words(result: xr.Dataset) -> str:
-    """Say what the fit found, path by path."""
+    """Say which spectrum the road was made from, or what the fit found, path by path."""
+    if "spectrum" in result.attrs:
+        return f"It was made from a spectrum, so none is fitted: {result.attrs['spectrum']}."
     said = []
     for contact in plots.foremost(result):
-        spectrum = plots.road_spectrum(result, contact)
-        level, waviness = fit_iso(*spectrum)
-        if np.isfinite(level):
-            at_two, _ = fit_iso(*spectrum, waviness=2.0)
-            said.append(
-                f"{number(1e6 * level, 3)} × 10⁻⁶ m³ at 0.1 cycle/m with waviness {number(waviness, 3)} under "
-                f"contact {contact}; with the waviness 2 of the standard {number(1e6 * at_two, 3)} × 10⁻⁶ m³, "
-                f"class {iso_class(at_two)}"
-            )
-    if not said:
-        return "The road is flat, or its record too short, so no class is fitted."
-    return (
-        f"The fit (dashed) gives {'; '.join(said)}. A class describes random roughness; a single bump or joint "
-        "has none."
-    )
+        fit = fit_iso(*plots.road_spectrum(result, contact))
+        if fit.reason:
+            said.append(f"Under contact {contact} no class is fitted: {fit.reason}.")
+            continue
+        said.append(
+            f"The fit under contact {contact} (dashed, over {fit.covered}) gives "
+            f"{number(fit.roughness, 3)} m³ at 0.1 cycle/m with waviness "
+            f"{number(fit.waviness, 3)}; with the waviness 2 of the standard "
+            f"{number(fit.roughness_at_two, 3)} m³, class {fit.road_class}"
+            + (f" ({fit.doubt})." if fit.doubt else ".")
+        )
+    return f"{' '.join(said)} A class describes random roughness; a single bump or joint has none."
 
 
 def _contact_offsets(result: xr.Dataset) -> list[float]:
-    """Zero, and the smallest and largest distance between contacts, ahead and behind [m]."""
+    """Zero, and two distances between contacts, ahead and behind [m]: the least, and the next twice as long."""
     positions = result.position.values
     distances = np.unique(np.round(np.abs(positions[:, None] - positions), 6))
     distances = distances[distances > 0]
-    chosen = np.unique([*distances[:1], *distances[-1:]]).tolist()
+    chosen = [*distances[:1].tolist(), *distances[distances >= 2 * distances.min(initial=np.inf)][:1].tolist()]
     return [0.0, *(offset for distance in chosen for offset in (distance, -distance))]
 
 
@@ -221,9 +224,12 @@ def _frf_figures(result: xr.Dataset, guideway: Guideway, offsets: list[float]) -
         omega = 2 * np.pi * (frequency - 1j * FRF_DECAY * frequency[-1])
         return guideway.moving_frf(np.asarray(ahead), speed, omega)
 
-    highest = _frf_end(0.5 / wording.time_step(result), truncation, frf)
+    highest = _frf_end(result, frf)
     frequency = np.linspace(0.0, highest, FRF_POINTS)
     values = frf(frequency, offsets)
+    largest = np.abs(values).max(axis=0)
+    seen = np.flatnonzero(largest >= plots.FRF_RANGE * largest.max())
+    values, offsets = values[:, seen], [offsets[place] for place in seen]
     figure = blank(SINGLE + STACKED + 1.2)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(SINGLE, STACKED + 0.5))
     mark = truncation if truncation < highest else None
@@ -234,12 +240,18 @@ def _frf_figures(result: xr.Dataset, guideway: Guideway, offsets: list[float]) -
     return [illustrated("frf", "Moving FRFs of the road", _frf_words(values, offsets, mark, beyond), figure)]
 
 
-def _frf_end(
-    nyquist: float, truncation: float, frf: Callable[[FloatArray, Sequence[float]], ComplexArray]
-) -> float:
-    """Highest frequency to draw [Hz]."""
-    if 0 < truncation < nyquist:
-        return max(FRF_BEYOND * truncation, FRF_LEAST)
+def _frf_end(result: xr.Dataset, frf: Callable[[FloatArray, Sequence[float]], ComplexArray]) -> float:
+    """Highest frequency to draw [Hz]: where deflections under contacts end, a truncation, or the FRF itself."""
+    step, truncation = wording.time_step(result), result.attrs.get("truncation", 0.0)
+    nyquist = 0.5 / step
+    kept = max(FRF_BEYOND * truncation, FRF_LEAST) if 0 < truncation < nyquist else nyquist
+    if "contact_force" in result:
+        spectra = (plots.spectral_density(deflection, step) for deflection in result.deflection.values.T)
+        ends = [plots.upper_end(*spectrum) for spectrum in spectra if spectrum[0].size]
+        if ends:
+            return min(max(ends), kept)
+    if kept < nyquist:
+        return kept
     frequency = np.linspace(0.0, nyquist, FRF_POINTS)
     amplitude = np.abs(frf(frequency, [0.0])[:, 0])
     needed = frequency[np.flatnonzero(amplitude >= FRF_SMALL * amplitude.max())[-1]] if amplitude.any() else 0.0
@@ -275,7 +287,7 @@ def _panels(
 
 
 def _forces_figure(result: xr.Dataset) -> Illustration:
-    curves = plots.contact_curves(result)
+    curves = plots.distinct(plots.contact_curves(result), result.contact_force.values)
     figure = _panels(
         len(curves),
         lambda n, ax: plots.contact_forces(result, ax, contacts=[curves[n].column]).set_ylabel("force [kN]"),
@@ -309,9 +321,7 @@ def _zoom_figures(result: xr.Dataset) -> list[Illustration]:
     if duration <= 2 * ZOOM or not peak:
         return []
     first = min(max(instant - ZOOM / 2, 0.0), duration - ZOOM)
-    chosen = [curve.column for curve in plots.contact_curves(result)]
-    if contact not in chosen:
-        chosen = [contact]
+    chosen = _neighbours(result, contact)
     figure = blank(SINGLE)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     plots.contact_forces(result, ax, contacts=chosen, interval=(first, first + ZOOM))
@@ -319,11 +329,20 @@ def _zoom_figures(result: xr.Dataset) -> list[Illustration]:
         line.set_linewidth(1.5)
     plots.legend_above(ax)
     caption = (
-        f"The {ZOOM:g} s around the largest dynamic force ({number(1e-3 * peak)} kN under contact {contact}). "
-        "Wheels in one path meet the same spot one after the other: look for the same event with its delay. "
+        f"The {ZOOM:g} s around the largest dynamic force ({number(1e-3 * peak)} kN under contact {contact}), "
+        "there and under the nearest contact of the same path. They meet the same spot one after the other: look "
+        "for the same event with its delay. "
         "Dashed: the static levels."
     )
     return [illustrated("zoom", "Contact forces around the peak", caption, figure)]
+
+
+def _neighbours(result: xr.Dataset, contact: int) -> list[int]:
+    """Name a contact and the one nearest to it in its path."""
+    position, path = result.position.values, result.path.values
+    same = np.flatnonzero(path == path[contact])
+    nearest = same[np.argsort(np.abs(position[same] - position[contact]), kind="stable")]
+    return sorted(nearest[:MOST_NEIGHBOURS].tolist())
 
 
 def _force_spectra_figure(result: xr.Dataset) -> Illustration:
@@ -333,14 +352,14 @@ def _force_spectra_figure(result: xr.Dataset) -> Illustration:
     caption = (
         "Amplitude spectral densities of the dynamic contact forces (one-sided; their squares integrate to the "
         "variance). The lowest humps are, as a rule, the body on its suspension, higher ones the wheels on their "
-        "tyres. The frequency axis covers 99.99 % of the variance, and the truncation."
+        "tyres. The frequency axis covers 99.99 % of the variance."
     )
     caption += wording.some_of(result.sizes["contact"], plots.MOST_CURVES, "contacts")
     return illustrated("force-spectra", "Contact-force spectra", caption, figure)
 
 
 def _deflections_figure(result: xr.Dataset) -> Illustration:
-    curves = plots.contact_curves(result)
+    curves = plots.distinct(plots.contact_curves(result), result.deflection.values)
     figure = _panels(
         len(curves),
         lambda n, ax: plots.deflections(result, ax, places=[curves[n].column]).set_ylabel("deflection [mm]"),
@@ -361,7 +380,8 @@ def _deflections_figure(result: xr.Dataset) -> Illustration:
 
 def _accelerations_figure(result: xr.Dataset) -> Illustration:
     total = result.sizes["dof"]
-    dofs = plots.shown(total, MOST_DOFS)
+    rms = np.sqrt(np.mean(result.acceleration.values**2, axis=0))
+    dofs = plots.telling(rms, result.dof_unit.values.tolist(), MOST_DOFS)
     figure = blank((PANEL + 0.15) * max(len(dofs), 2) + 0.4)
     axes = figure.subplots(len(dofs), 2, sharex="col", squeeze=False, width_ratios=(3, 2))
     for row, dof in zip(axes, dofs, strict=True):
@@ -379,7 +399,7 @@ def _accelerations_figure(result: xr.Dataset) -> Illustration:
         "has its own scale: compare numbers, not heights. Look for the frequencies at which a degree "
         "of freedom moves most."
     )
-    caption += wording.some_of(total, MOST_DOFS, "degrees of freedom")
+    caption += wording.some_of(total, len(dofs), "degrees of freedom") + (MOVES_ALIKE if len(dofs) < total else "")
     return illustrated("accelerations", "Accelerations of the vehicle", caption, figure)
 
 

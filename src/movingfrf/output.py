@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from movingfrf._checks import finite
 from movingfrf.metrics.basic import Measure
+from movingfrf.schema import COUPLED, LOADED, flaws
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -102,7 +103,7 @@ def load(file: Path) -> xr.Dataset:
     OSError
         If the file cannot be read.
     ValueError
-        If it is not netCDF, or no result of the package.
+        If it is not netCDF, no result of the package, or lacks a variable or a finite number in one.
     """
     import xarray as xr
 
@@ -119,8 +120,14 @@ def load(file: Path) -> xr.Dataset:
             f"{file}: holds the response to a random road, which `movingfrf random` has measured already, see its "
             "summary.json; `movingfrf measure` takes histories, as `movingfrf run` writes them"
         )
-    if "movingfrf" not in result.attrs or "deflection" not in result:
+    if "movingfrf" not in result.attrs:
         raise ValueError(f"{file}: is no result of movingfrf")
+    schema = LOADED if "load" in result.dims else COUPLED
+    lacking = [name for name in ("speed", "time_step", "findings") if name not in result.attrs]
+    found = [f"lacks the attribute {name}" for name in lacking]
+    found += flaws(result, [name for name, label in schema.items() if not label.optional])
+    if found:
+        raise ValueError(f"{file}: {'; '.join(found)}")
     return result
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -9,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._checks import ComplexArray, FloatArray
-from movingfrf.roughness.spectra import CLASS_CENTRES, IsoRoad, fit_iso, welch
+from movingfrf.roughness.fitting import IsoFit, fit_iso, welch
+from movingfrf.roughness.spectra import CLASS_CENTRES, IsoRoad
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,6 +32,13 @@ BUCKETS = 2000
 SEGMENTS, LONGEST_SEGMENT, LONGEST_STRETCH = 8, 10.0, 250.0
 FEWEST_SAMPLES = 32
 
+# Orders of magnitude of a moving FRF that are drawn.
+FRF_RANGE = 1e-5
+
+# Curves that differ by less than this share of their largest value lie on top of each other; motions whose root
+# mean squares differ by less than this share tell the same.
+COINCIDENT, ALIKE = 1e-6, 0.1
+
 # Below this share of its size a variation is rounding, below this elevation [m] a road is flat.
 ROUNDING, FLAT = 1e-9, 1e-12
 
@@ -41,6 +50,9 @@ DRAWN_RANGE, DRAWN_VARIANCE = 1e-7, 0.9999
 
 # A frequency axis ends no earlier than this [Hz], where the record goes as far.
 LEAST_END = 40.0
+
+# Opacity of a spectrum under its fit.
+PALE = 0.6
 
 # Least height of an axis, relative to the values on it: a constant must look constant.
 LEAST_HEIGHT = 0.02
@@ -124,6 +136,71 @@ def shown(count: int, most: int = MOST_CURVES) -> list[int]:
     if count <= most:
         return list(range(count))
     return [round(number) for number in np.linspace(0, count - 1, most).tolist()]
+
+
+def telling(rms: FloatArray, units: Sequence[str], most: int) -> list[int]:
+    """Which degrees of freedom to draw where there are more than a figure bears.
+
+    Those that move like one before them are left out, then the liveliest: bodies come before wheels.
+
+    Parameters
+    ----------
+    rms : ndarray, shape (dof,)
+        Root mean square of each acceleration [m/s² or rad/s²].
+    units : sequence of str
+        Unit of each degree of freedom.
+    most : int
+        Number of degrees of freedom that a figure bears.
+
+    Returns
+    -------
+    list of int
+        Their numbers.
+
+    Examples
+    --------
+    >>> telling(np.array([1.0, 2.0, 9.0, 1.05, 2.0, 9.1]), ["m", "rad", "m", "m", "rad", "m"], most=5)
+    [0, 1, 2]
+    """
+    if len(rms) <= most:
+        return list(range(len(rms)))
+    chosen: list[int] = []
+    for dof, size in enumerate(rms):
+        if all(units[dof] != units[one] or abs(size - rms[one]) > ALIKE * rms[one] for one in chosen):
+            chosen.append(dof)
+    return sorted(sorted(chosen, key=lambda dof: rms[dof])[:most])
+
+
+def distinct(curves: Sequence[Curve], values: FloatArray) -> list[Curve]:
+    """Merge curves that lie on top of each other: the first one stays, and says which others it stands for.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        The curves.
+    values : ndarray, shape (sample, channel)
+        What is drawn, in any unit.
+
+    Returns
+    -------
+    list of Curve
+        Curves that can be told apart.
+    """
+    groups: list[list[Curve]] = []
+    for curve in curves:
+        mine = values[:, curve.column]
+        for group in groups:
+            other = values[:, group[0].column]
+            if np.abs(mine - other).max(initial=0.0) <= COINCIDENT * np.abs(other).max(initial=0.0):
+                group.append(curve)
+                break
+        else:
+            groups.append([curve])
+    others = [f" = {len(group) - 1} others" if len(group) > 2 else f" = {group[-1].name}" for group in groups]
+    return [
+        group[0]._replace(name=group[0].name + (words if len(group) > 1 else ""))
+        for group, words in zip(groups, others, strict=True)
+    ]
 
 
 def contact_curves(result: xr.Dataset, contacts: Sequence[int] | None = None) -> list[Curve]:
@@ -413,7 +490,7 @@ def roughness(result: xr.Dataset, ax: Axes) -> Axes:
     matplotlib.axes.Axes
         `ax`.
     """
-    for curve in contact_curves(result, foremost(result)):
+    for curve in distinct(contact_curves(result, foremost(result)), result.roughness.values):
         start = result.attrs.get("start", 0.0) + result.position.values[curve.column]
         distance, elevation = decimated(
             start + result.attrs["speed"] * result.time.values, result.roughness.values[:, curve.column]
@@ -439,25 +516,22 @@ def roughness_spectrum(result: xr.Dataset, ax: Axes) -> Axes:
     Returns
     -------
     matplotlib.axes.Axes
-        `ax`; the class lines are the geometric centres of the classes.
+        `ax`; the class lines are the geometric centres of the classes. A fit is drawn over the frequencies that it
+        was made from, unless the result says which spectrum its road was made from.
     """
     low, high = 0.01, 10.0
     ends = np.array([low, high])
     lowest, highest = IsoRoad.of_class("A").density(ends)[1], IsoRoad.of_class("H").density(ends)[1]
-    for curve in contact_curves(result, foremost(result)):
+    for curve in distinct(contact_curves(result, foremost(result)), result.roughness.values):
         n, density = road_spectrum(result, curve.column)
-        level, waviness = fit_iso(n, density)
         inside = (n >= low) & (n <= high) & (density > 0)
         if not inside.any():
             continue
         n, density = decimated(n[inside], density[inside], logarithmic=True)
-        ax.plot(n, density, color=curve.colour, label=f"under {curve.name}")
+        ax.plot(n, density, color=curve.colour, alpha=PALE, label=f"under {curve.name}")
         highest = max(highest, float(density.max()))
-        if np.isfinite(level):
-            fitted = IsoRoad(roughness=level, waviness=waviness, band=(0.011, 2.83))
-            across = np.array(fitted.band)
-            label = "_" if any(line.get_label() == "fit" for line in ax.lines) else "fit"
-            ax.plot(across, fitted.density(across), color=INK, linestyle="--", linewidth=1.6, label=label)
+        if "spectrum" not in result.attrs:
+            draw_fit(fit_iso(*road_spectrum(result, curve.column)), curve.colour, ax)
     ax.set(xscale="log", yscale="log", xlim=(low, high), ylim=(lowest / 30, 5 * highest))
     ax.minorticks_off()
     draw_classes(ax, ends)
@@ -544,7 +618,7 @@ def frf_amplitude(
         largest = float(amplitude.max())
         ax.set_yscale("log")
         ax.minorticks_off()
-        ax.set_ylim(max(0.5 * float(amplitude[amplitude > 0].min()), 1e-5 * largest), 2 * largest)
+        ax.set_ylim(max(0.5 * float(amplitude[amplitude > 0].min()), FRF_RANGE * largest), 2 * largest)
     else:
         _fit_height(ax)
     ax.set_ylabel("amplitude [µm/kN]")
@@ -554,7 +628,7 @@ def frf_amplitude(
 def frf_phase(
     frequency: FloatArray, frf: ComplexArray, offsets: ArrayLike, ax: Axes, *, truncation: float | None = None
 ) -> Axes:
-    """Draw phases of the moving FRF, unwrapped [degrees], over frequency [Hz].
+    """Draw phases of the moving FRF, unwrapped [degrees], over frequency [Hz], where the amplitude is drawn.
 
     Parameters
     ----------
@@ -576,7 +650,9 @@ def frf_phase(
     """
     from matplotlib.ticker import MultipleLocator
 
-    phase = np.degrees(np.unwrap(np.angle(frf), axis=0))
+    amplitude = np.abs(frf)
+    seen = amplitude >= FRF_RANGE * amplitude.max()
+    phase = np.where(seen, np.degrees(np.unwrap(np.angle(frf), axis=0)), np.nan)
     for values, style in zip(phase.T, _offset_styles(offsets), strict=True):
         ax.plot(frequency, values, **style)
     ax.set_ylabel("phase [°]")
@@ -661,7 +737,9 @@ def _curves(names: Sequence[str], chosen: Sequence[int] | None) -> list[Curve]:
     usual = shown(len(names))
     colours = {column: PALETTE[rank] for rank, column in enumerate(usual)}
     columns = usual if chosen is None else list(chosen)
-    return [Curve(c, names[c], colours.get(c, PALETTE[c % len(PALETTE)])) for c in columns]
+    taken = {colours[column] for column in columns if column in colours}
+    free = itertools.cycle([colour for colour in PALETTE if colour not in taken] or PALETTE)
+    return [Curve(c, names[c], colours[c] if c in colours else next(free)) for c in columns]
 
 
 def _place_curves(result: xr.Dataset, places: Sequence[int] | None) -> list[Curve]:
@@ -741,14 +819,14 @@ def _draw_densities(
     truncation = float(result.attrs.get("truncation", 0.0))
     if truncation > 0.499 / time_step:  # nothing is left out, and there is nothing to mark
         truncation = 0.0
-    found = [(curve, *spectral_density(values[:, curve.column], time_step)) for curve in curves]
+    found = [(c, *spectral_density(values[:, c.column], time_step)) for c in distinct(curves, values)]
     found = [(curve, frequency, density) for curve, frequency, density in found if frequency.size]
     ax.set_xlabel("frequency [Hz]")
     if not found:
         _note(ax, "nothing varies, or the record is too short for a spectrum")
         ax.set(xlim=(0, 0.5 / time_step), yticks=())
         return
-    end = max(_upper_end(frequency, density, truncation) for _, frequency, density in found)
+    end = max(upper_end(frequency, density) for _, frequency, density in found)
     extremes = []
     for curve, frequency, density in found:
         drawn = (frequency <= end) & (density > 0)
@@ -763,11 +841,31 @@ def _draw_densities(
     _mark_truncation(ax, truncation)
 
 
-def _upper_end(frequency: FloatArray, density: FloatArray, truncation: float) -> float:
-    """Upper end of a frequency axis [Hz] that shows nearly all of the variance, and the truncation."""
+def upper_end(frequency: FloatArray, density: FloatArray) -> float:
+    """Find the upper end of a frequency axis that shows nearly all of the variance.
+
+    Parameters
+    ----------
+    frequency : ndarray
+        Frequency [Hz].
+    density : ndarray
+        Spectral density [unit²/Hz].
+
+    Returns
+    -------
+    float
+        The end [Hz].
+    """
     share = np.cumsum(density) / density.sum()
     needed = float(frequency[np.searchsorted(share, DRAWN_VARIANCE).clip(max=len(share) - 1)])
-    return min(max(1.3 * needed, 1.3 * truncation, LEAST_END), float(frequency[-1]))
+    return min(max(1.3 * needed, LEAST_END), float(frequency[-1]))
+
+
+def draw_fit(fit: IsoFit, colour: str, ax: Axes) -> None:
+    """Draw a fitted line, if there is one, over the range that was fitted; curves below it should be pale."""
+    if not fit.reason:
+        ends = np.array(fit.band)
+        ax.plot(ends, fit.density(ends), color=colour, linestyle="--", linewidth=1.8)
 
 
 def draw_classes(ax: Axes, ends: FloatArray) -> None:

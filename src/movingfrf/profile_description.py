@@ -11,9 +11,11 @@ from movingfrf._checks import ComplexArray, FloatArray, finite
 from movingfrf.metrics.iri import AVERAGE, LONGEST_STEP, RUN_IN, iri
 from movingfrf.plots import FLAT, shown
 from movingfrf.progress import Progress, silent
+from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
 from movingfrf.roughness.preparation import resampled, selected
 from movingfrf.roughness.profiles import Profile
-from movingfrf.roughness.spectra import SMOOTHING_EDGES, fit_iso, iso_class
+from movingfrf.roughness.spectra import CLASS_CENTRES
+from movingfrf.wording import paths as named
 
 # Segments over which the roughness index is taken [m].
 SEGMENTS = (20.0, 100.0)
@@ -30,6 +32,13 @@ PIECES, LONGEST_PIECE = 8, 400.0
 # and a stretch of this length [m] and so many stations without any change.
 SPIKE, UNUSUAL = 5e-3, 15.0
 LEVEL, LEVEL_STATIONS = 5.0, 20
+
+# Of level stretches the longest so many are named.
+MOST_STRETCHES = 5
+
+# Rougher than roads are: a density at 0.1 cycle/m [m³], where class H begins, and an index [mm/m]. A smooth road
+# whose centimetres are taken for metres lies beyond both.
+NO_ROAD = (2 * CLASS_CENTRES["G"], 200.0)
 
 # Resolutions of instruments and file formats that are looked for [m], and on how many stations.
 RESOLUTIONS = (1e-2, 1e-3, 5e-4, 2.5e-4, 1e-4, 1e-5, 1e-6)
@@ -58,12 +67,8 @@ class PathDescription:
         Elevations between which it lies [m].
     resolution : float
         What all elevations are a multiple of [m]; 0 if nothing was found.
-    roughness, waviness : float
-        Fitted spectrum: density at 0.1 cycle/m [m³] and exponent; nan on a flat or short profile.
-    roughness_at_two : float
-        The same with the waviness 2 of ISO 8608 [m³].
-    road_class : str
-        Class of ISO 8608; empty without a fit.
+    fit : IsoFit
+        Fitted spectrum: roughness, waviness, class and range, or why there is none.
     index : float
         International roughness index of the whole path [mm/m]; nan where it has none.
     indices : dict of float to ndarray
@@ -77,10 +82,7 @@ class PathDescription:
     lowest: float
     highest: float
     resolution: float
-    roughness: float
-    waviness: float
-    roughness_at_two: float
-    road_class: str
+    fit: IsoFit
     index: float
     indices: dict[float, FloatArray]
     spatial_frequency: FloatArray
@@ -100,10 +102,10 @@ class ProfileDescription:
     used_step : float
         Step of the stations that spectra and indices were taken from [m].
     paths : tuple of PathDescription
-        The paths, or some of them where there are many.
+        The paths; of equal ones the first, and some of them where there are many.
     coherence : tuple of ndarray, or None
         Spatial frequency [cycle/m] and magnitude-squared coherence, dimensionless, between the first and the last
-        path; None with one path.
+        path described; None with one path.
     findings : tuple of str
         What looks odd.
     """
@@ -121,6 +123,12 @@ class ProfileDescription:
         """Distance from the first station to the last [m]."""
         return float(np.ptp(self.profile.stations))
 
+    @property
+    def scope(self) -> str:
+        """How many of the paths are described, in words; empty if all of them."""
+        described, paths = len(self.paths), self.profile.paths
+        return f"{described} of {paths} paths are described" if described < paths else ""
+
 
 def describe_profile(profile: Profile, *, progress: Progress = silent) -> ProfileDescription:
     """Describe a profile.
@@ -128,8 +136,8 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
     Parameters
     ----------
     profile : Profile
-        The profile. Of many paths, six are described. Where stations are uneven, spectra, coherence and the
-        roughness index are taken from the cubic spline at the median step.
+        The profile. Of equal paths the first is described, and of many paths six. Where stations are uneven,
+        spectra, coherence and the roughness index are taken from the cubic spline at the median step.
     progress : callable
         Called with the name of a stage and the fraction of it that is done.
 
@@ -143,17 +151,18 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
     >>> from movingfrf.roughness.realisation import realise
     >>> from movingfrf.roughness.spectra import IsoRoad
     >>> road = realise(IsoRoad.of_class("B"), length=1000.0, seed=1)
-    >>> describe_profile(road).paths[0].road_class
+    >>> describe_profile(road).paths[0].fit.road_class
     'B'
     """
     steps = np.diff(profile.stations)
-    findings = []
-    numbers = shown(profile.paths)
-    if len(numbers) < profile.paths:
-        findings.append(f"{len(numbers)} of {profile.paths} paths are described.")
-        described = selected(profile, paths=numbers)
-    else:
-        described = profile
+    alike = profile.alike
+    findings = [
+        f"{_sentence(named(same))} are equal: path {same[0]} is described for all."
+        for same in alike
+        if len(same) > 1
+    ]
+    numbers = [alike[n][0] for n in shown(len(alike))]
+    described = selected(profile, paths=numbers) if len(numbers) < profile.paths else profile
     step = described.even_step(UNEVEN)
     if step is None:
         progress("even stations", 0.0)
@@ -172,8 +181,9 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
     for n, number in enumerate(numbers):
         progress("paths", n / len(numbers))
         column = profile.columns[:, number]
-        findings += _oddities(profile.stations, column, number, profile.paths)
         paths.append(_path(described, n, number, column, indices, estimated))
+        findings += _oddities(profile.stations, column, f" on path {number}" if len(alike) > 1 else "")
+    findings += _doubts(paths)
     return ProfileDescription(
         profile=profile,
         shortest_step=float(steps.min()),
@@ -208,10 +218,12 @@ def as_dict(found: ProfileDescription, understood: str = "") -> dict[str, object
             "lowest_m": path.lowest,
             "highest_m": path.highest,
             "resolution_m": path.resolution or None,
-            "roughness_m3": path.roughness,
-            "waviness": path.waviness,
-            "roughness_at_waviness_2_m3": path.roughness_at_two,
-            "iso_8608_class": path.road_class or None,
+            "roughness_m3": path.fit.roughness,
+            "waviness": path.fit.waviness,
+            "roughness_at_waviness_2_m3": path.fit.roughness_at_two,
+            "fitted_over_cycle_per_m": list(path.fit.band),
+            "iso_8608_class": path.fit.road_class or None,
+            "why_no_class": path.fit.reason or None,
             "iri_mm_per_m": path.index,
             **{f"iri_per_{span:g}_m_mm_per_m": each.tolist() for span, each in path.indices.items()},
         }
@@ -249,8 +261,6 @@ def _path(
 ) -> PathDescription:
     density = estimated.own[:, column]
     spectrum = (estimated.spatial_frequency, density) if density.any() else (np.empty(0), np.empty(0))
-    roughness, waviness = fit_iso(*spectrum)
-    at_two = fit_iso(*spectrum, waviness=2.0)[0]
     across = even.across[column] if even.across is not None else None
     return PathDescription(
         number=number,
@@ -258,10 +268,7 @@ def _path(
         lowest=float(elevation.min()),
         highest=float(elevation.max()),
         resolution=_resolution(elevation[:LOOKED_AT]),
-        roughness=roughness,
-        waviness=waviness,
-        roughness_at_two=at_two,
-        road_class=iso_class(at_two) if np.isfinite(at_two) else "",
+        fit=fit_iso(*spectrum),
         index=float(indices[0.0][0, column]) if 0.0 in indices else float("nan"),
         indices={span: found[:, column] for span, found in indices.items() if span},
         spatial_frequency=spectrum[0],
@@ -339,9 +346,30 @@ def _resolution(elevation: FloatArray) -> float:
     return 0.0
 
 
-def _oddities(stations: FloatArray, elevation: FloatArray, number: int, paths: int) -> list[str]:
+def _doubts(paths: list[PathDescription]) -> list[str]:
+    """Say why there is no class or it means little, once for all paths of which it is true, and what is no road."""
+    said: dict[str, list[int]] = {}
+    for path in paths:
+        words = f"no class: {path.fit.reason}" if path.fit.reason else path.fit.doubt
+        if words:
+            said.setdefault(f"{words}.", []).append(path.number)
+        if path.fit.roughness_at_two > NO_ROAD[0] or path.index > NO_ROAD[1]:
+            rough = (f"IRI {path.index:.4g} mm/m",) if np.isfinite(path.index) else ()
+            dense = () if path.fit.reason else (f"{path.fit.roughness_at_two:.3g} m³ at 0.1 cycle/m",)
+            words = f"rougher than roads are, {' and '.join(rough + dense)}: are the elevations in metres?"
+            said.setdefault(words, []).append(path.number)
+    return [
+        _sentence(words if len(numbers) == len(paths) else f"{named(numbers)}: {words}")
+        for words, numbers in said.items()
+    ]
+
+
+def _sentence(words: str) -> str:
+    return words[0].upper() + words[1:]
+
+
+def _oddities(stations: FloatArray, elevation: FloatArray, of: str) -> list[str]:
     """Say what looks like a drop-out, a spike or a fill."""
-    of = f" on path {number}" if paths > 1 else ""
     found = []
     bend = np.abs(elevation[1:-1] - (elevation[:-2] + elevation[2:]) / 2)
     # A spike bends its neighbours half as much; it is counted once.
@@ -356,11 +384,14 @@ def _oddities(stations: FloatArray, elevation: FloatArray, number: int, paths: i
         found.append((one if high.size == 1 else several) + by)
     changes = np.flatnonzero(np.diff(elevation) != 0)
     bounds = np.concatenate([[0], changes + 1, [len(elevation)]])
-    longest = int(np.diff(bounds).argmax())
-    first, last = int(bounds[longest]), int(bounds[longest + 1]) - 1
-    if last - first >= LEVEL_STATIONS and stations[last] - stations[first] >= LEVEL:
+    lengths = stations[bounds[1:] - 1] - stations[bounds[:-1]]
+    level = np.flatnonzero((np.diff(bounds) > LEVEL_STATIONS) & (lengths >= LEVEL))
+    if level.size:
+        longest = level[np.sort(np.argsort(-lengths[level], kind="stable")[:MOST_STRETCHES])]
+        places = [f"over {lengths[n]:.4g} m from {stations[bounds[n]]:g} m on" for n in longest]
+        more = f", and in {level.size - len(places)} shorter stretches" if level.size > len(places) else ""
         found.append(
-            f"The elevation{of} does not change at all over {stations[last] - stations[first]:.4g} m from "
-            f"{stations[first]:g} m on: a drop-out that was filled, or a level that is no measurement."
+            f"The elevation{of} does not change at all {', '.join(places)}{more}: a drop-out that was filled, or a "
+            "level that is no measurement."
         )
     return found

@@ -17,14 +17,15 @@ from movingfrf.wording import number, plain
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Spatial frequencies of the figures [cycle/m], and the range that ISO 8608 fits.
-DRAWN, FITTED = (0.005, 10.0), (0.011, 2.83)
+# Spatial frequencies of the figures [cycle/m].
+DRAWN = (0.005, 10.0)
 
 METHOD = (
     "Spectra by Welch's method: half-overlapping pieces of at most 400 m, each freed of its trend, Hann window; "
-    "one-sided, without the three lowest lines. The fit is a straight line in logarithms over 0.011 to 2.83 "
-    "cycle/m through the mean densities of the bands of ISO 8608 (octaves, thirds, twelfths); the class is that of "
-    "the fit with waviness 2.",
+    "one-sided, without the three lowest lines. The fit is a straight line in logarithms through the mean "
+    "densities of the bands of ISO 8608 (octaves, thirds, twelfths) from 0.011 to 2.83 cycle/m, or that part of it "
+    "in which there is content: not beyond a place where the density falls to a quarter of the line. The class is "
+    "that of the fit with waviness 2.",
     "IRI: the golden car at 80 km/h over the profile averaged over 250 mm (ASTM E1926), mean rectified suspension "
     "speed over speed; segments from the first station on, what is left at the end left out.",
     "Coherence: magnitude squared of the cross-spectrum over the product of both spectra, each summed over the "
@@ -48,7 +49,8 @@ def tables(found: ProfileDescription) -> list[Table]:
     """
     colours = _colours(found)
     spectra = Table(
-        "Elevation and fitted spectrum of each path: density G at 0.1 cycle/m and waviness w.",
+        "Elevation and fitted spectrum of each path: density G at 0.1 cycle/m, waviness w, and the range that they "
+        f"were fitted over.{f' {found.scope}.' if found.scope else ''}",
         "path",
         [
             Column("lowest", "m"),
@@ -56,6 +58,7 @@ def tables(found: ProfileDescription) -> list[Table]:
             Column("resolution", "mm"),
             Column("G", "10⁻⁶ m³"),
             Column("w", ""),
+            Column("fitted", "cycle/m"),
             Column("G at w = 2", "10⁻⁶ m³"),
             Column("class", ""),
         ],
@@ -66,10 +69,11 @@ def tables(found: ProfileDescription) -> list[Table]:
                     number(path.lowest, 6),
                     number(path.highest, 6),
                     plain(1e3 * path.resolution) if path.resolution else "–",
-                    _or_dash(1e6 * path.roughness),
-                    _or_dash(path.waviness),
-                    _or_dash(1e6 * path.roughness_at_two),
-                    path.road_class or "–",
+                    _or_dash(1e6 * path.fit.roughness),
+                    _or_dash(path.fit.waviness),
+                    "–" if path.fit.reason else f"{path.fit.band[0]:.2g} to {path.fit.band[1]:.3g}",
+                    _or_dash(1e6 * path.fit.roughness_at_two),
+                    path.fit.road_class or "–",
                 ],
                 colour,
             )
@@ -123,7 +127,7 @@ def render(found: ProfileDescription, *, understood: str, title: str) -> str:
         Setting("length", f"{found.length:.6g} m", f"from {stations[0]:g} to {stations[-1]:g} m"),
         Setting("stations", str(stations.size)),
         Setting("step", f"{step} m"),
-        Setting("paths", str(found.profile.paths)),
+        Setting("paths", str(found.profile.paths), f"{len(found.paths)} of them described" if found.scope else ""),
         Setting("source", found.profile.source or "not stated", wide=True),
         Setting("understood", understood, wide=True),
     ]
@@ -144,11 +148,12 @@ def render(found: ProfileDescription, *, understood: str, title: str) -> str:
 
 
 def _lead(found: ProfileDescription) -> str:
-    classes = sorted({path.road_class for path in found.paths if path.road_class})
+    classes = sorted({path.fit.road_class for path in found.paths if path.fit.road_class})
     rough = [path.index for path in found.paths if np.isfinite(path.index)]
     words = f"A profile of {found.length:.6g} m with {wording.count(found.profile.paths, 'path')}"
     if classes:
         words += f", class {' to '.join(dict.fromkeys([classes[0], classes[-1]]))} of ISO 8608"
+        words += " (of little meaning, see below)" if any(path.fit.doubt for path in found.paths) else ""
     if rough:
         words += f", with an IRI of {' to '.join(dict.fromkeys(f'{x:.2f}' for x in (min(rough), max(rough))))} mm/m"
     return f"{words}."
@@ -206,10 +211,8 @@ def _spectra(found: ProfileDescription) -> Illustration:
         if not inside.any():
             continue
         n, density = plots.decimated(n[inside], density[inside], buckets=400, logarithmic=True)
-        ax.plot(n, density, color=colour, label=f"path {_name(path)}")
-        if np.isfinite(path.roughness):
-            line = IsoRoad(roughness=path.roughness, waviness=path.waviness, band=FITTED)
-            ax.plot(FITTED, line.density(np.array(FITTED)), color=plots.INK, linestyle="--", linewidth=1.4)
+        ax.plot(n, density, color=colour, alpha=plots.PALE, label=f"path {_name(path)}")
+        plots.draw_fit(path.fit, colour, ax)
         low, high = min(low, float(density.min())), max(high, float(density.max()))
     ax.set(xscale="log", yscale="log", xlim=DRAWN, ylim=(max(low, 1e-12 * high) / 3, 3 * high))
     ax.minorticks_off()
@@ -219,7 +222,8 @@ def _spectra(found: ProfileDescription) -> Illustration:
     plots.legend_above(ax)
     caption = (
         "Spectrum of the elevation among the centre lines of the ISO 8608 classes A (smooth) to H (rough); dashed, "
-        "the fit. A floor at high frequencies is, as a rule, the resolution of the instrument or the file."
+        "the fit of each path over the range that was fitted. A floor at high frequencies is, as a rule, the "
+        "resolution of the instrument or the file."
     )
     return illustrated("spectrum", "Spectrum", caption, figure)
 

@@ -12,7 +12,8 @@ from movingfrf import illustrations, plots, wording
 from movingfrf._checks import FloatArray
 from movingfrf.illustrations import Illustration
 from movingfrf.metrics.basic import Measure
-from movingfrf.page import Column, Row, Setting, Table, page
+from movingfrf.page import Setting, measure_tables, page
+from movingfrf.roughness.spectra import IsoRoad
 from movingfrf.wording import number, plain
 
 if TYPE_CHECKING:
@@ -20,10 +21,27 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SCALES = {"N": ("kN", 1e-3), "m": ("mm", 1e3), "1": ("", 1.0)}
+# Frequencies of the figures.
+DRAWN_FREQUENCIES = 1200
+
+CAPTIONS = {
+    "force": "Contact forces: the static one, and the dynamic one that the roughness adds.",
+    "load": "Total contact forces, static and dynamic, and what they do to the road. The dynamic load coefficient "
+    "is the rms of the dynamic force over the static one.",
+    "deflection": "Deflections of the road under the contacts; rms and peak of the dynamic part.",
+    "acceleration": "Accelerations about the steady state.",
+    "angular acceleration": "Angular accelerations about the steady state.",
+}
 
 
-def render(result: xr.Dataset, found: Sequence[Measure], *, title: str, scenario: str = "") -> str:
+def render(
+    result: xr.Dataset,
+    found: Sequence[Measure],
+    *,
+    title: str,
+    scenario: str = "",
+    drawn: xr.Dataset | None = None,
+) -> str:
     """Write the report of a random response.
 
     Parameters
@@ -36,14 +54,17 @@ def render(result: xr.Dataset, found: Sequence[Measure], *, title: str, scenario
         Title of the page.
     scenario : str
         Text of the scenario file, shown as it is.
+    drawn : xarray.Dataset, optional
+        The same response at `drawing_frequencies`; by default curves have the corners of the result's frequencies.
 
     Returns
     -------
     str
         One HTML page without references to anything outside it. Equal input gives equal text.
     """
+    curves = result if drawn is None else drawn
     with illustrations.drawing():
-        figures = [_forces(result), *_motions(result), _deflections(result), _surface(result)]
+        figures = [_forces(curves), *_motions(curves), _deflections(curves), _surface(curves)]
     messages = [finding["message"] for finding in json.loads(result.attrs["findings"])]
     contacts = wording.count(result.sizes["contact"], "contact")
     weight = number(1e-3 * float(result.static_load.values.sum()))
@@ -57,11 +78,28 @@ def render(result: xr.Dataset, found: Sequence[Measure], *, title: str, scenario
         findings=[f"{message[:1].upper()}{message[1:].rstrip('.')}." for message in messages],
         no_findings="No findings: contact is unlikely to be lost within the exposure, the speed is well below "
         "critical, and the forces have no content of weight at the end of the spectrum's band.",
-        tables=_tables(found),
+        tables=measure_tables(result, found, CAPTIONS),
         figures=figures,
         method=_method(),
         scenario=scenario,
     )
+
+
+def drawing_frequencies(result: xr.Dataset) -> FloatArray:
+    """Frequencies at which curves are smooth: those of the result, where densities vary, and many in between.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What `random_response` returned.
+
+    Returns
+    -------
+    ndarray, shape (frequency,)
+        Frequencies [Hz].
+    """
+    lines = result.frequency.values
+    return np.union1d(lines, np.geomspace(lines[0], lines[-1], DRAWN_FREQUENCIES))
 
 
 def paths(result: xr.Dataset) -> str:
@@ -78,9 +116,11 @@ def paths(result: xr.Dataset) -> str:
         A few words, or the model as it was given.
     """
     coherence = str(result.attrs["coherence"])
+    several = len(np.unique(result.path.values)) > 1
     words = {
         "one path": "one path under all contacts",
-        "1.0": "one road under all wheels",
+        "1.0": "one road under all wheels"
+        + (": left and right see the same, and nothing makes the vehicle roll" if several else ""),
         "0.0": "paths without anything in common",
     }
     return words.get(coherence, f"coherence {coherence}")
@@ -127,72 +167,35 @@ def _method() -> list[str]:
     ]
 
 
-def _tables(found: Sequence[Measure]) -> list[Table]:
-    """Put forces in one table, loads in the next, then deflections, then accelerations."""
-    captions = {
-        "force": "Contact forces: the static one, and the dynamic one that the roughness adds.",
-        "load": "Total contact forces, static and dynamic, and what they do to the road. The dynamic load "
-        "coefficient is the rms of the dynamic force over the static one.",
-        "deflection": "Deflections of the road under the contacts; rms and peak of the dynamic part.",
-        "acceleration": "Accelerations about the steady state.",
-    }
-    tables = []
-    for kind, caption in captions.items():
-        rows: dict[str, list[Measure]] = {}
-        for measure in found:
-            place, _, quantity = measure.quantity.rpartition(" ")
-            if quantity == kind:
-                rows.setdefault(place, []).append(measure)
-        columns = list(zip(*rows.values(), strict=True))
-        units = [{measure.units for measure in column} for column in columns]
-        heads = [
-            Column(column[0].name, SCALES.get(column[0].units, (column[0].units, 1.0))[0] if len(used) == 1 else "")
-            for column, used in zip(columns, units, strict=True)
-        ]
-        tables.append(
-            Table(
-                caption,
-                "degree of freedom" if kind == "acceleration" else "contact",
-                heads,
-                [
-                    Row(
-                        plots.readable(place),
-                        [_cell(measure, len(used) > 1) for measure, used in zip(measures, units, strict=True)],
-                    )
-                    for place, measures in rows.items()
-                ],
-            )
-        )
-    return tables
-
-
-def _cell(measure: Measure, with_unit: bool) -> str:
-    unit, scale = SCALES.get(measure.units, (measure.units, 1.0))
-    if np.isnan(measure.value):
-        return "–"
-    return number(scale * measure.value) + (f" {unit}" if with_unit else "")
-
-
 def _figure(result: xr.Dataset, quantity: str, curves: Sequence[plots.Curve], scale: float, label: str) -> Figure:
     """Draw amplitude densities over frequency, and below them which share of the variance lies below it."""
     figure = illustrations.blank(illustrations.SINGLE + illustrations.PANEL)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(5, 3))
-    frequency, bandwidth = result.frequency.values, result.bandwidth.values
-    highest = 0.0
-    for curve in curves:
-        density = result[f"{quantity}_density"].values[:, curve.column]
-        amplitude, share = scale * np.sqrt(density), np.cumsum(bandwidth * density)
-        highest = max(highest, float(amplitude.max()))
+    frequency, densities = result.frequency.values, result[f"{quantity}_density"].values
+    lowest, highest = np.inf, 0.0
+    for curve in plots.distinct(curves, densities):
+        density = densities[:, curve.column]
+        amplitude, share = scale * np.sqrt(density), _below(frequency, density)
         if share[-1]:
-            above.plot(frequency, amplitude, color=curve.colour, label=curve.name)
-            below.plot(frequency, 100 * share / share[-1], color=curve.colour)
+            lowest, highest = min(lowest, float(amplitude.min())), max(highest, float(amplitude.max()))
+            above.plot(*_thinned(frequency, amplitude), color=curve.colour, label=curve.name)
+            below.plot(*_thinned(frequency, 100 * share / share[-1]), color=curve.colour)
     if highest:
-        above.set(yscale="log", ylim=(highest * np.sqrt(plots.DRAWN_RANGE), 2 * highest))
+        above.set(yscale="log", ylim=(max(lowest / 1.5, highest * np.sqrt(plots.DRAWN_RANGE)), 1.5 * highest))
     above.set_ylabel(label)
     below.set(ylim=(0, 101), xlabel="frequency [Hz]", ylabel="variance below [%]")
     _logarithmic(below, frequency)
     plots.legend_above(above)
     return figure
+
+
+def _below(frequency: FloatArray, density: FloatArray) -> FloatArray:
+    """Integrate a density up to every frequency, by trapezoids."""
+    return np.append(0.0, np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(frequency)))
+
+
+def _thinned(frequency: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    return plots.decimated(frequency, values, buckets=DRAWN_FREQUENCIES // 2, logarithmic=True)
 
 
 def _logarithmic(ax: Axes, values: FloatArray) -> None:
@@ -235,13 +238,16 @@ def _motions(result: xr.Dataset) -> list[Illustration]:
             continue
         curves = [
             plots.Curve(int(dofs[n]), plots.readable(str(result.dof.values[dofs[n]])), plots.PALETTE[rank])
-            for rank, n in enumerate(plots.shown(dofs.size))
+            for rank, n in enumerate(
+                plots.telling(result.acceleration_rms.values[dofs], [unit] * dofs.size, plots.MOST_CURVES)
+            )
         ]
         figure = _figure(result, "acceleration", curves, 1.0, f"acceleration density [{unit}/s²/√Hz]")
         caption = (
             "Amplitude spectral density of the accelerations, and the share of their variance below a frequency."
         )
-        caption += wording.some_of(dofs.size, plots.MOST_CURVES, "degrees of freedom")
+        caption += wording.some_of(dofs.size, len(curves), "degrees of freedom")
+        caption += illustrations.MOVES_ALIKE if len(curves) < dofs.size else ""
         found.append(illustrations.illustrated(f"motion-{unit}", heading, caption, figure))
     return found
 
@@ -250,12 +256,20 @@ def _surface(result: xr.Dataset) -> Illustration:
     figure = illustrations.blank(illustrations.SINGLE)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     n, speed = result.frequency.values / result.attrs["speed"], result.attrs["speed"]
-    for curve in plots.contact_curves(result):
+    ends = n[[0, -1]]
+    lowest, highest = IsoRoad.of_class("A").density(n)[-1], IsoRoad.of_class("H").density(n)[-1]
+    for curve in plots.distinct(plots.contact_curves(result), result.roughness_density.values):
         seen = speed * result.roughness_density.values[:, curve.column]
-        ax.plot(n, np.where(seen > 0, seen, np.nan), color=curve.colour, label=curve.name)
+        ax.plot(*_thinned(n, seen), color=curve.colour, label=curve.name)
+        lowest, highest = min(lowest, seen[-1]), max(highest, float(seen.max()))
     ax.set(yscale="log", xlabel="spatial frequency [cycle/m]")
+    ax.set_ylim(max(lowest / 10, 1e-3 * plots.DRAWN_RANGE * highest), 5 * highest)
     _logarithmic(ax, n)
+    plots.draw_classes(ax, ends)
     ax.set_ylabel("spectral density $G_d$ [m³]")
     plots.legend_above(ax)
-    caption = "Spectral density of the road as the contacts see it; a footprint takes the short waves away."
+    caption = (
+        "Spectral density of the road as the contacts see it, among the centre lines of the ISO 8608 classes A "
+        "(smooth) to H (rough); a footprint takes the short waves away."
+    )
     return illustrations.illustrated("surface", "Road", caption, figure)

@@ -223,7 +223,8 @@ def random_response(
         "dynamic_load_coefficient": load_coefficient(force_rms, steady.load),
         "lift_off_share": lift_off_share,
         "lift_off_rate": lift_off_rate,
-        "weighted_acceleration": _weighted(vehicle, lines),
+        # What does not move but for rounding is not felt either.
+        "weighted_acceleration": np.where(statistics["acceleration_rms"] > 0, _weighted(vehicle, lines), 0.0),
     }
     attributes: dict[str, str | float | int] = {
         "title": "Stationary response of a vehicle and a guideway to a random road",

@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from movingfrf import illustrations, plots, wording
 from movingfrf.guideways.base import Guideway
-from movingfrf.metrics.basic import Measure, measures
-from movingfrf.page import Column, Row, Setting, Table, page
+from movingfrf.metrics.basic import measures
+from movingfrf.page import Column, Row, Setting, Table, measure_tables, page
 from movingfrf.wording import number, plain
 
 if TYPE_CHECKING:
     import xarray as xr
 
-SCALES = {"N": ("kN", 1e-3), "m": ("mm", 1e3), "1": ("", 1.0)}
+CAPTIONS = {
+    "force": "Contact forces. The dynamic part is what the roughness adds to the static level; the dynamic load "
+    "coefficient is its rms over the static force.",
+    "deflection": "Deflections of the road under the contacts, positive down.",
+    "acceleration": "Accelerations about the steady state, as they are and as people feel them: weighted with Wk "
+    "of ISO 2631-1.",
+    "angular acceleration": "Angular accelerations about the steady state, as they are and weighted with We of "
+    "ISO 2631-1.",
+}
 
 
 def render(result: xr.Dataset, *, guideway: Guideway, scenario_text: str = "", title: str = "") -> str:
@@ -51,7 +58,7 @@ def render(result: xr.Dataset, *, guideway: Guideway, scenario_text: str = "", t
         settings=_settings(result),
         findings=_findings(result),
         no_findings=_no_findings(coupled),
-        tables=_measure_tables(result) if coupled else _loaded_tables(result),
+        tables=measure_tables(result, measures(result), CAPTIONS) if coupled else _loaded_tables(result),
         figures=figures,
         method=_coupled_method() if coupled else _loaded_method(),
         scenario=scenario_text or result.attrs.get("scenario", ""),
@@ -105,7 +112,7 @@ def _settings(result: xr.Dataset) -> list[Setting]:
     if "datum" in attrs:
         found.append(Setting("Datum", f"{number(attrs['datum'])} m", "subtracted from the profile's elevations"))
     if "road" in attrs:
-        found.append(Setting("Road surface", attrs["road"], wide=True))
+        found.append(Setting("Roughness", attrs["road"], wide=True))
     if "guideway" in attrs:
         found.append(Setting("Road (SI units)", attrs["guideway"], wide=True))
     return found
@@ -179,67 +186,6 @@ def _loaded_method() -> list[str]:
 
 
 # Tables
-
-
-def _measure_tables(result: xr.Dataset) -> list[Table]:
-    """Contacts in one table, degrees of freedom in another, and so on for whatever has the same measures."""
-    rows: dict[str, list[tuple[str, Measure]]] = {}
-    for measure in measures(result):
-        place, _, kind = measure.quantity.rpartition(" ")
-        rows.setdefault(place, []).append((kind, measure))
-    groups: dict[tuple[tuple[str, str], ...], list[str]] = {}
-    for place, found in rows.items():
-        groups.setdefault(tuple((kind, measure.name) for kind, measure in found), []).append(place)
-    contacts = {f"contact {c.column}": c for c in plots.contact_curves(result, range(result.sizes["contact"]))}
-    drawn = set(plots.shown(len(contacts)))
-    return [
-        _measure_table(kinds, [(place, rows[place]) for place in places], contacts, drawn)
-        for kinds, places in groups.items()
-    ]
-
-
-def _measure_table(
-    kinds: Sequence[tuple[str, str]],
-    rows: Sequence[tuple[str, list[tuple[str, Measure]]]],
-    contacts: dict[str, plots.Curve],
-    drawn: set[int],
-) -> Table:
-    units = [{found[n][1].units for _, found in rows} for n in range(len(kinds))]
-    columns = []
-    for (kind, name), used in zip(kinds, units, strict=True):
-        in_head = SCALES.get(next(iter(used)), (next(iter(used)), 1.0))[0] if len(used) == 1 else ""
-        columns.append(Column(_column_name(kind, name), in_head))
-    made = []
-    for place, found in rows:
-        curve = contacts.get(place)
-        cells = []
-        for (_, measure), used in zip(found, units, strict=True):
-            unit, scale = SCALES.get(measure.units, (measure.units, 1.0))
-            # A unit stands in the head of its column, unless the column mixes units.
-            cells.append(number(scale * measure.value) + (f" {unit}" if len(used) > 1 else ""))
-        colour = curve.colour if curve and curve.column in drawn else ""
-        made.append(Row(curve.name if curve else plots.readable(place), cells, colour))
-    if rows[0][0] in contacts:
-        return Table(
-            "Contact forces and deflections of the road. The dynamic part is what the roughness adds to the static "
-            "level; the dynamic load coefficient is its rms over the static force.",
-            "contact",
-            columns,
-            made,
-        )
-    return Table(
-        "Accelerations about the steady state, as they are and as people feel them: weighted by ISO 2631-1, "
-        "translations with Wk and rotations with We.",
-        "degree of freedom",
-        columns,
-        made,
-    )
-
-
-def _column_name(kind: str, name: str) -> str:
-    if name == "dynamic load coefficient":
-        return "dynamic load coefficient"
-    return f"{kind}, {name}"
 
 
 def _loaded_tables(result: xr.Dataset) -> list[Table]:

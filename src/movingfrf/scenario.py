@@ -149,6 +149,8 @@ class Scenario:
                 progress=progress,
             )
         road = {} if self.road is None else {"road": self.road.description}
+        if self.road is not None and self.road.spectrum is not None:
+            road["spectrum"] = str(self.road.spectrum)
         return result.assign_attrs(scenario=self.text, **road)
 
 
@@ -187,7 +189,7 @@ def profile(
         repeat_to=repeat_to,
         mirror_to=mirror_to,
     )
-    return Road(ready, "; ".join([understood, *ready.steps[len(found.steps) :]]))
+    return Road(ready, "; ".join([understood, *ready.steps]))
 
 
 def passage(*, speed: float, duration: float, time_step: float = 1e-3, truncation: float | None = None) -> Journey:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ class Label(NamedTuple):
     units: str
     long_name: str
     coordinate: bool = False
+    optional: bool = False
 
 
 _TIME = Label(("time",), "s", "time", coordinate=True)
@@ -29,7 +30,7 @@ COUPLED: dict[str, Label] = {
     "contact": Label(("contact",), "1", "number of the contact", coordinate=True),
     "position": Label(("contact",), "m", "position of the contact, ahead positive", coordinate=True),
     "path": Label(("contact",), "1", "path of the profile that the contact follows", coordinate=True),
-    "contact_name": Label(("contact",), "1", "name of the contact", coordinate=True),
+    "contact_name": Label(("contact",), "1", "name of the contact", coordinate=True, optional=True),
     "dof": Label(("dof",), "1", "degree of freedom", coordinate=True),
     "dof_unit": Label(("dof",), "1", "unit of the degree of freedom", coordinate=True),
     "contact_force": Label(("time", "contact"), "N", "dynamic contact force, compression positive"),
@@ -40,8 +41,8 @@ COUPLED: dict[str, Label] = {
     "acceleration": Label(("time", "dof"), "m/s2 or rad/s2", "acceleration, down, nose down"),
     "roughness": Label(("time", "contact"), "m", "elevation of the road under the contact, up"),
     # Points of a finite road that stand still, where they were asked for.
-    "place": Label(("place",), "m", "position of a point of the road", coordinate=True),
-    "place_deflection": Label(("time", "place"), "m", "deflection of the road at that point, down"),
+    "place": Label(("place",), "m", "position of a point of the road", coordinate=True, optional=True),
+    "place_deflection": Label(("time", "place"), "m", "deflection of the road at that point, down", optional=True),
 }
 
 # The response of a guideway to prescribed forces.
@@ -132,7 +133,41 @@ def labelled(
     data: dict[str, xr.Variable] = {}
     coordinates: dict[str, xr.Variable] = {}
     for name, value in values.items():
-        dims, units, long_name, is_coordinate = schema[name]
-        variable = xr.Variable(dims, np.asarray(value), {"units": units, "long_name": long_name})
-        (coordinates if is_coordinate else data)[name] = variable
+        label = schema[name]
+        variable = xr.Variable(label.dims, np.asarray(value), {"units": label.units, "long_name": label.long_name})
+        (coordinates if label.coordinate else data)[name] = variable
     return xr.Dataset(data, coordinates, dict(attributes))
+
+
+def flaws(result: xr.Dataset, names: Iterable[str]) -> list[str]:
+    """Say which variables a result lacks, and where one is not finite.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        A result, from a file as a rule.
+    names : iterable of str
+        Variables that it should have.
+
+    Returns
+    -------
+    list of str
+        Clauses such as `lacks acceleration` and `has contact_force nan at time 0.3 s, contact 1`.
+    """
+    there = getattr(result, "variables", {})
+    lacking = [name for name in names if name not in there]
+    found = [f"lacks {', '.join(lacking)}"] if lacking else []
+    for name in names:
+        if name in lacking or result[name].dtype.kind != "f":
+            continue
+        values = result[name].values
+        bad = np.argwhere(~np.isfinite(values))
+        if bad.size:
+            where = [
+                f"{dim} {result[dim].values[at]:g} {result[dim].attrs.get('units', '')}".removesuffix(" 1").rstrip()
+                if result[dim].dtype.kind in "iuf"
+                else f"{dim} {result[dim].values[at]}"
+                for dim, at in zip(result[name].dims, bad[0], strict=True)
+            ]
+            found.append(f"has {name} {values[tuple(bad[0])]} at {', '.join(where)}")
+    return found

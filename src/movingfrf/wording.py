@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
     import xarray as xr
+
+# Numbers of paths that are written out.
+MOST_PATHS = 6
+
+# A rate [1/s] or a share below this stands for never.
+NEVER = 1e-12
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -49,9 +56,25 @@ def plain(value: float) -> str:
     return f"{value:.10g}".replace("-", "−")
 
 
+def is_never(value: float, units: str) -> bool:
+    """Tell whether a rate or a share is too small for its digits to mean anything."""
+    return units in ("1/s", "1") and 0 < value < NEVER
+
+
 def count(number: int, singular: str, plural: str = "") -> str:
     """Write a number of things, in the singular or the plural."""
     return f"{number} {singular if number == 1 else plural or singular + 's'}"
+
+
+def paths(numbers: Sequence[int]) -> str:
+    """Name some paths by their numbers: path 0, paths 0 and 2, paths 0, 1, 2, 3 and 11 more."""
+    words = [str(number) for number in numbers]
+    if len(words) == 1:
+        return f"path {words[0]}"
+    if len(words) > MOST_PATHS:
+        words = [*words[: MOST_PATHS - 1], f"{len(words) - MOST_PATHS + 1} more"]
+    *first, last = words
+    return f"paths {', '.join(first)} and {last}"
 
 
 def some_of(total: int, most: int, what: str) -> str:

@@ -221,6 +221,65 @@ def test_assess_measures_what_was_chosen():
     assert rms.value == pytest.approx(abs(mf.weighting("Wd", 8.0)) / np.sqrt(2), rel=0.01)
 
 
+def test_the_first_seconds_can_be_left_out():
+    """Forces and accelerations that set in after two seconds of nothing: what is left are whole waves."""
+    result = travelled(amplitude=1e3, duration=12.0)
+    for name in ("contact_force", "acceleration"):
+        result[name][:2000] = 0.0
+    found = {(m.quantity, m.name): m.value for m in assess(result, dofs=["body"], since=2.0)}
+    assert found["contact 0 force", "dynamic load coefficient"] == pytest.approx(1e3 / np.sqrt(2) / 5e3, rel=1e-9)
+    assert found["body acceleration", "rms"] == pytest.approx(1 / np.sqrt(2), rel=1e-9)
+    everything = {(m.quantity, m.name): m.value for m in assess(result, dofs=["body"])}
+    share = np.sqrt(10 / 12)
+    assert everything["contact 0 force", "dynamic load coefficient"] == pytest.approx(
+        share * found["contact 0 force", "dynamic load coefficient"], rel=1e-9
+    )
+
+
+def test_a_weighting_has_run_in_before_what_is_left():
+    """Once its filter has forgotten the start, a sine has the gain of the weighting to many digits."""
+    result = travelled(amplitude=1.0, duration=40.0)
+    gain = abs(mf.weighting("Wk", 8.0))
+    (late,) = [m for m in assess(result, contacts=[], dofs=["body"], since=20.0) if m.name == "weighted rms"]
+    assert late.value == pytest.approx(gain / np.sqrt(2), rel=1e-6)
+    assert mf.comfort(result, "body", since=20.0).rms == late.value
+    assert mf.comfort(result, "body", since=20.0).duration == pytest.approx(20.0)
+    assert mf.comfort(result, "body").rms != pytest.approx(gain / np.sqrt(2), rel=1e-6)
+
+
+def test_one_measure_without_an_answer_leaves_the_others():
+    """Contacts 2.5 m apart, a record of 2 m: no point meets both."""
+    found = assess(travelled(amplitude=1e3, duration=0.1))
+    (wear,) = [m for m in found if m.quantity == "path 0 wear"]
+    assert np.isnan(wear.value)
+    assert wear.note == "the record is too short for all contacts to pass one point of the road"
+    assert [m.name for m in found if np.isnan(m.value)] == [wear.name, "crest factor"]  # and a pitch of nothing
+    (wear,) = [m for m in assess(travelled(amplitude=1e3, duration=0.2)) if m.quantity == "path 0 wear"]
+    assert wear.value > 1
+    assert not wear.note
+
+
+def test_verdicts_on_what_was_chosen():
+    """By hand: a sine of 8 Hz, weighted by 1.04, has an rms of 0.73 m/s² and no shocks; a single blow is one."""
+    result = travelled(amplitude=1e3)
+    notes = {m.name: m.note for m in assess(result, contacts=[], dofs=["body"]) if m.note}
+    assert notes == {
+        "weighted rms": "fairly uncomfortable (ISO 2631-1, C.2.3)",
+        "crest factor": "not above 9",
+        "MTVV": "not above 1.5 times the weighted rms",
+        "VDV": "not above 1.75 times the weighted rms times the fourth root of the duration",
+    }
+    result.acceleration[:] = 0.0
+    result.acceleration[5000:5020] = 8.0
+    blow = {(m.quantity, m.name): m.note for m in assess(result, contacts=[], dofs=["body", "pitch"])}
+    for name in ("crest factor", "MTVV", "VDV"):
+        for dof in ("body", "pitch"):
+            assert blow[f"{dof} acceleration", name].endswith(": the rms alone understates this vibration")
+    assert not blow["pitch acceleration", "weighted rms"]
+    assert not any(m.note for m in assess(result))
+    assert not any(m.note for m in assess(result, dofs=["body"], weighting="Wf"))
+
+
 def test_usual_measures_are_among_all():
     result = travelled(amplitude=1e3)
     everything = assess(result)
@@ -236,13 +295,26 @@ def test_usual_measures_are_among_all():
         ),
         (lambda r: mf.aggregate_force(r, power=0.0), "power must be positive"),
         (lambda r: mf.aggregate_force(r, spacing=-1.0), "spacing must be positive"),
-        (lambda r: mf.aggregate_force(r.isel(time=slice(0, 20))), "result must be long enough for every contact"),
+        (
+            lambda r: mf.aggregate_force(r.isel(time=slice(0, 20))),
+            "contacts lie up to 2.5 m apart, and the record covers 0.38 m",
+        ),
         (lambda r: mf.road_wear(r, percentile=101.0), "percentile must lie between 0 and 100 %"),
-        (lambda r: mf.road_stress_factor(-0.1), "coefficient must not be negative"),
+        (lambda r: mf.road_stress_factor(-0.1), "coefficient must be at least zero throughout, got -0.1"),
         (lambda r: assess(r, contacts=[2]), "contacts must be among 0, 1, got 2"),
         (lambda r: assess(r, dofs=["nose"]), "dofs must be among body, pitch, got 'nose'"),
         (lambda r: assess(r, weighting="Wx"), "weighting must be one of"),
-        (lambda r: assess(r, slope=0.0), "slope must be positive"),
+        (lambda r: assess(r, slope=0.0), "slope must be positive, got 0.0$"),
+        (lambda r: assess(r, since=-1.0), "since must not be negative, got -1.0 s"),
+        (lambda r: assess(r, since=10.0), "since must lie within the record, 9.999 s at most, got 10.0 s"),
+        (lambda r: mf.comfort(r, "body", since=99.0), "since must lie within the record"),
+        (lambda r: mf.road_stress_factor([0.1, np.nan]), "coefficient must be at least zero throughout, got nan"),
+        (
+            lambda r: assess(r.assign(acceleration=r.acceleration.where(r.time != 0.5))),
+            "in finite numbers, but has acceleration nan at time 0.5 s, dof body",
+        ),
+        (lambda r: assess(r.drop_vars("static_deflection")), "in finite numbers, but lacks static_deflection"),
+        (lambda r: mf.vibration_total([1.0], "x"), "factors must be an array of numbers, got 'x'"),
         (lambda r: assess(r.drop_vars("contact_force")), "result must be the coupled response of a vehicle"),
         (lambda r: mf.measures(None), "result must be the coupled response of a vehicle"),
         (

@@ -8,10 +8,20 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from movingfrf._checks import Checks, FloatArray, checking
-from movingfrf.metrics.comfort import WEIGHTINGS, check_weighting, whole_body_vibration
+from movingfrf.metrics.comfort import (
+    CREST_LIMIT,
+    MTVV_LIMIT,
+    VDV_LIMIT,
+    WEIGHTINGS,
+    Comfort,
+    check_weighting,
+    samples_before,
+    whole_body_vibration,
+)
 from movingfrf.metrics.fatigue import equivalent_amplitude
 from movingfrf.metrics.loads import (
     check_coupled,
+    common_points,
     contact_loss,
     dynamic_load_coefficient,
     road_stress_factor,
@@ -23,6 +33,8 @@ if TYPE_CHECKING:
 
 CEBON, EISENMANN, CYCLES = "Cebon 1999", "Eisenmann 1975", "ASTM E1049"
 
+DEFLECTIONS = ("deflection", "static_deflection")
+
 
 class Measure(NamedTuple):
     """One number about a result."""
@@ -32,6 +44,7 @@ class Measure(NamedTuple):
     value: float
     units: str
     standard: str = ""  # the standard or the source that defines it, where the name alone does not
+    note: str = ""  # what the standard makes of the value, or why there is none (nan)
 
 
 def measures(result: xr.Dataset) -> list[Measure]:
@@ -69,13 +82,13 @@ def measures(result: xr.Dataset) -> list[Measure]:
             for measure in _rms_and_peak(f"deflection at {point:g} m", deflection, "m")
         ]
     with checking() as check:
-        check_coupled(check, result)
+        check_coupled(check, result, *DEFLECTIONS)
     contacts, dofs = range(result.sizes["contact"]), range(result.sizes["dof"])
     coefficients = dynamic_load_coefficient(result)
     return [
         *(measure for contact in contacts for measure in _of_force(result, contact, coefficients)),
         *(measure for contact in contacts for measure in _of_deflection(result, contact)),
-        *(measure for dof in dofs for measure in _of_acceleration(result, dof, "Wk")[:3]),
+        *(measure for dof in dofs for measure in _of_acceleration(result, dof, "Wk", 0.0)[:3]),
     ]
 
 
@@ -86,6 +99,7 @@ def assess(
     dofs: Sequence[str] | None = None,
     weighting: str = "Wk",
     slope: float | None = None,
+    since: float = 0.0,
 ) -> list[Measure]:
     """Measure a coupled response in every way that the package knows.
 
@@ -96,12 +110,16 @@ def assess(
     contacts : sequence of int, optional
         Numbers of the contacts; all by default.
     dofs : sequence of str, optional
-        Names of the degrees of freedom; all by default.
+        Names of the degrees of freedom, those where people are: what ISO 2631-1 makes of them is then noted. All
+        by default, without such notes.
     weighting : str
         Frequency weighting of translations; rotations have We.
     slope : float, optional
         Exponent of an S-N curve; adds the amplitude of the steady cycling, once a second, that would do the same
         damage as each contact force.
+    since : float
+        Seconds to leave out at the start [s]: there wheels may not have reached the rough road yet, and what they
+        roll onto has not built up.
 
     Returns
     -------
@@ -109,13 +127,15 @@ def assess(
         In addition to `measures`: road stress factor, share of the time and longest time without contact [s] of
         every contact; peak, crest factor, MTVV [m/s²] and VDV [m/s^1.75] of every weighted acceleration (rad for m
         if it is a rotation); and, unless contacts are chosen, the aggregate fourth-power force on each path that
-        95 % of the road's points bear at most, over that of the static loads.
+        95 % of the road's points bear at most, over that of the static loads. A measure without an answer is nan,
+        and its note says why. Notes also hold the likely reactions to a weighted rms, and whether a limit is
+        exceeded beyond which the rms understates a vibration.
 
     Raises
     ------
     ValueError
-        If the result is none of a vehicle, there is no such contact, degree of freedom or weighting, or a slope is
-        given and the extra `fatigue` is not installed.
+        If the result is none of a vehicle or not finite, there is no such contact, degree of freedom or weighting,
+        nothing is left of the record, or a slope is given and the extra `fatigue` is not installed.
 
     Examples
     --------
@@ -128,13 +148,15 @@ def assess(
     ['MTVV', 'VDV']
     """
     with checking() as check:
-        check_coupled(check, result)
+        check_coupled(check, result, *DEFLECTIONS)
         if not check.faults:
             _check_chosen(check, "contacts", contacts, list(range(result.sizes["contact"])))
             _check_chosen(check, "dofs", dofs, result.dof.values.tolist())
         check_weighting(check, weighting)
         if slope is not None:
             check.positive("slope", slope, "1")
+    step = float(result.attrs["time_step"])
+    whole, result = result, result.isel(time=slice(samples_before(since, step, result.sizes["time"]), None))
     names = result.dof.values.tolist()
     numbers = range(result.sizes["contact"]) if contacts is None else contacts
     coefficients, loss = dynamic_load_coefficient(result), contact_loss(result)
@@ -150,18 +172,14 @@ def assess(
         ]
         if slope is not None:
             force = result.contact_force.values[:, contact]
-            duration = force.size * float(result.attrs["time_step"])
-            amplitude = equivalent_amplitude(force, slope=slope, duration=duration)
+            amplitude = equivalent_amplitude(force, slope=slope, duration=force.size * step)
             found.append(Measure(quantity, "damage-equivalent amplitude at 1 Hz", amplitude, "N", CYCLES))
     for contact in numbers:
         found += _of_deflection(result, contact)
     if contacts is None:
-        found += [
-            Measure(f"path {path} wear", "95th percentile of ΣP⁴ over static", float(ratio), "1", CEBON)
-            for path, ratio in zip(np.unique(result.path.values), road_wear(result), strict=True)
-        ]
+        found += _of_wear(result)
     for dof in names if dofs is None else dofs:
-        found += _of_acceleration(result, names.index(dof), weighting)
+        found += _of_acceleration(whole, names.index(dof), weighting, since, judged=dofs is not None)
     return found
 
 
@@ -187,21 +205,61 @@ def _of_deflection(result: xr.Dataset, contact: int) -> list[Measure]:
     ]
 
 
-def _of_acceleration(result: xr.Dataset, number: int, weighting: str) -> list[Measure]:
+def _of_wear(result: xr.Dataset) -> list[Measure]:
+    paths = np.unique(result.path.values)
+    ratios, note = (
+        np.full(paths.size, np.nan),
+        "the record is too short for all contacts to pass one point of the road",
+    )
+    if common_points(result).size:
+        ratios, note = road_wear(result), ""
+    name = "95th percentile of ΣP⁴ over static"
+    return [
+        Measure(f"path {path} wear", name, float(ratio), "1", CEBON, note)
+        for path, ratio in zip(paths, ratios, strict=True)
+    ]
+
+
+def _of_acceleration(
+    result: xr.Dataset, number: int, weighting: str, since: float, *, judged: bool = False
+) -> list[Measure]:
     """As it is first, then as people would feel it."""
     quantity, acceleration = f"{result.dof.values[number]} acceleration", result.acceleration.values[:, number]
     unit = str(result.dof_unit.values[number])
     name = weighting if unit == "m" else "We"
     standard = WEIGHTINGS[name].standard
-    weighted = whole_body_vibration(acceleration, float(result.attrs["time_step"]), name)
+    step = float(result.attrs["time_step"])
+    weighted = whole_body_vibration(acceleration, step, name, since=since)
+    notes = _verdicts(weighted, unit) if judged else {}
+    by = f"{standard}, {name}"
     return [
-        *_rms_and_peak(quantity, acceleration, f"{unit}/s²"),
-        Measure(quantity, "weighted rms", weighted.rms, f"{unit}/s²", f"{standard}, {name}"),
-        Measure(quantity, "weighted peak", weighted.peak, f"{unit}/s²", f"{standard}, {name}"),
-        Measure(quantity, "crest factor", weighted.crest_factor, "1", f"{standard}, {name}"),
-        Measure(quantity, "MTVV", weighted.mtvv, f"{unit}/s²", f"{standard}, {name}"),
-        Measure(quantity, "VDV", weighted.vdv, f"{unit}/s^1.75", f"{standard}, {name}"),
+        *_rms_and_peak(quantity, acceleration[samples_before(since, step, acceleration.size) :], f"{unit}/s²"),
+        Measure(quantity, "weighted rms", weighted.rms, f"{unit}/s²", by, notes.get("rms", "")),
+        Measure(quantity, "weighted peak", weighted.peak, f"{unit}/s²", by),
+        Measure(quantity, "crest factor", weighted.crest_factor, "1", by, notes.get("crest", "")),
+        Measure(quantity, "MTVV", weighted.mtvv, f"{unit}/s²", by, notes.get("MTVV", "")),
+        Measure(quantity, "VDV", weighted.vdv, f"{unit}/s^1.75", by, notes.get("VDV", "")),
     ]
+
+
+def _verdicts(felt: Comfort, unit: str) -> dict[str, str]:
+    """Say what ISO 2631-1 makes of a vibration, by the measure that it judges; nothing of motion sickness."""
+    if felt.weighting == "Wf" or not felt.rms:
+        return {}
+    limits = {
+        "crest": f"{CREST_LIMIT:g}",
+        "MTVV": f"{MTVV_LIMIT:g} times the weighted rms",
+        "VDV": f"{VDV_LIMIT:g} times the weighted rms times the fourth root of the duration",
+    }
+    return {
+        "rms": f"{', or '.join(felt.reactions)} (ISO 2631-1, C.2.3)" if unit == "m" else "",
+        **{
+            name: f"above {limit}: the rms alone understates this vibration"
+            if name in felt.exceeded
+            else f"not above {limit}"
+            for name, limit in limits.items()
+        },
+    }
 
 
 def _rms_and_peak(quantity: str, values: FloatArray, units: str) -> list[Measure]:

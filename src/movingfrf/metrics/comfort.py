@@ -273,7 +273,7 @@ def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
     return np.asarray((np.sum(histories**4, axis=0) * time_step) ** 0.25).reshape(shape[1:])
 
 
-def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk") -> Comfort:
+def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk", since: float = 0.0) -> Comfort:
     """Measure how a degree of freedom would feel to somebody who moves with it.
 
     Parameters
@@ -285,6 +285,8 @@ def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk") -> Comfort:
     weighting : str
         Name of the frequency weighting: `Wk` for vertical motion of a seat or floor, `We` for a rotation; see
         `weighting`.
+    since : float
+        Seconds to leave out at the start [s], after weighting.
 
     Returns
     -------
@@ -295,7 +297,7 @@ def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk") -> Comfort:
     Raises
     ------
     ValueError
-        If there is no such degree of freedom or weighting.
+        If there is no such degree of freedom or weighting, or nothing is left.
 
     References
     ----------
@@ -318,10 +320,12 @@ def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk") -> Comfort:
         if not check.faults and dof not in result.dof.values.tolist():
             check.refuse("dof", f"must be one of {', '.join(map(str, result.dof.values))}, got {shown(dof)}")
     step = float(result.attrs["time_step"])
-    return whole_body_vibration(result.acceleration.sel(dof=dof).values, step, weighting)
+    return whole_body_vibration(result.acceleration.sel(dof=dof).values, step, weighting, since=since)
 
 
-def whole_body_vibration(acceleration: ArrayLike, time_step: float, weighting: str = "Wk") -> Comfort:
+def whole_body_vibration(
+    acceleration: ArrayLike, time_step: float, weighting: str = "Wk", *, since: float = 0.0
+) -> Comfort:
     """Measure an acceleration history, a recorded one for instance, as `comfort` measures a result's.
 
     Parameters
@@ -332,6 +336,8 @@ def whole_body_vibration(acceleration: ArrayLike, time_step: float, weighting: s
         Step in time [s].
     weighting : str
         Name of the frequency weighting.
+    since : float
+        Seconds to leave out at the start [s], after weighting: the weighting knows what went before.
 
     Returns
     -------
@@ -341,7 +347,8 @@ def whole_body_vibration(acceleration: ArrayLike, time_step: float, weighting: s
     Raises
     ------
     ValueError
-        If there is no such weighting, the step is not positive, or there is not one finite history.
+        If there is no such weighting, the step is not positive, there is not one finite history, or nothing of it
+        is left.
 
     References
     ----------
@@ -356,7 +363,9 @@ def whole_body_vibration(acceleration: ArrayLike, time_step: float, weighting: s
     """
     with checking() as check:
         check.array("acceleration", acceleration, "m/s²", (None,))
-    values = weighted(acceleration, time_step, weighting)
+        check.positive("time_step", time_step, "s")
+    first = samples_before(since, time_step, np.size(acceleration))
+    values = weighted(acceleration, time_step, weighting)[first:]
     return Comfort(
         weighting=weighting,
         rms=float(np.sqrt(np.mean(values**2))),
@@ -365,6 +374,38 @@ def whole_body_vibration(acceleration: ArrayLike, time_step: float, weighting: s
         vdv=float(vibration_dose(values, time_step)),
         duration=values.size * time_step,
     )
+
+
+def samples_before(since: float, time_step: float, count: int) -> int:
+    """Count the samples of a record that lie before an instant.
+
+    Parameters
+    ----------
+    since : float
+        The instant, from the first sample on [s].
+    time_step : float
+        Step in time [s].
+    count : int
+        Number of samples of the record.
+
+    Returns
+    -------
+    int
+        How many to leave out.
+
+    Raises
+    ------
+    ValueError
+        If the instant is negative, or beyond the record.
+    """
+    with checking() as check:
+        check.not_negative("since", since, "s")
+        if not check.faults and since > (count - 1) * time_step:
+            check.refuse(
+                "since", f"must lie within the record, {(count - 1) * time_step:.6g} s at most, got {since!r} s"
+            )
+    # A time is a whole number of steps but for rounding.
+    return int(np.ceil(since / time_step - 1e-6))
 
 
 def comfort_reactions(rms: float) -> tuple[str, ...]:

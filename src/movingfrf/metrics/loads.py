@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._checks import BoolArray, Checks, FloatArray, checking, require_memory
+from movingfrf.schema import flaws
 
 if TYPE_CHECKING:
     import xarray as xr
 
 # Share of the road points that bear at most the aggregate force by which a road is judged.
 PERCENTILE = 95.0
+
+# Distance between points of the road [m].
+SPACING = 0.1
 
 # Bytes per point of the road at the peak of adding up forces, beside those of every path.
 BYTES_PER_POINT = 64
@@ -89,7 +93,7 @@ def road_stress_factor(coefficient: ArrayLike) -> FloatArray:
     Raises
     ------
     ValueError
-        If the coefficient is negative.
+        If a coefficient is negative or nan.
 
     References
     ----------
@@ -103,11 +107,11 @@ def road_stress_factor(coefficient: ArrayLike) -> FloatArray:
     s = np.asarray(coefficient, float)
     with checking() as check:
         if not (s >= 0).all():
-            check.refuse("coefficient", f"must not be negative, got {s.min():g}")
+            check.refuse("coefficient", f"must be at least zero throughout, got {s[~(s >= 0)][0]:g}")
     return 1 + 6 * s**2 + 3 * s**4
 
 
-def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 0.1) -> xr.Dataset:
+def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = SPACING) -> xr.Dataset:
     """Add up what all contacts of a vehicle do to each point of the road, Σ_j P_jk^n.
 
     P_jk is the total force of contact j as it passes point k. Points lie at whole multiples of the spacing, where
@@ -159,17 +163,13 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
         check.positive("spacing", spacing, "m")
     speed, time = result.attrs["speed"], result.time.values
     starts = result.attrs["start"] + result.position.values
-    first, last = starts.max() + speed * time[0], starts.min() + speed * time[-1]
     static, paths = result.static_load.values, result.path.values
     numbers = np.unique(paths)
-    require_memory(
-        (last - first) / spacing * (BYTES_PER_POINT + 8 * numbers.size),
-        f"a spacing of {spacing:g} m between points",
-    )
-    points = spacing * np.arange(np.ceil(first / spacing - 1e-9), np.floor(last / spacing + 1e-9) + 1)
+    points = common_points(result, spacing)
     if not points.size:
         raise ValueError(
-            f"result must be long enough for every contact to pass one point, got {first:g} to {last:g} m"
+            "result must be long enough for every contact to pass one point: contacts lie up to "
+            f"{np.ptp(starts):g} m apart, and the record covers {speed * np.ptp(time):g} m"
         )
     found, rest = np.zeros((points.size, numbers.size)), np.zeros(numbers.size)
     for contact, start in enumerate(starts):
@@ -198,6 +198,36 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
         },
         {"power": float(power), "spacing": float(spacing)},
     )
+
+
+def common_points(result: xr.Dataset, spacing: float = SPACING) -> FloatArray:
+    """Points of the road that every contact passes during the record, at whole multiples of the spacing.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        The coupled response of a vehicle.
+    spacing : float
+        Distance between points [m].
+
+    Returns
+    -------
+    ndarray, shape (distance,)
+        Positions [m]; none where the record is shorter than the vehicle.
+
+    Raises
+    ------
+    ValueError
+        If memory does not hold what is to be added up at so many points.
+    """
+    starts = result.attrs["start"] + result.position.values
+    first = starts.max() + result.attrs["speed"] * result.time.values[0]
+    last = starts.min() + result.attrs["speed"] * result.time.values[-1]
+    require_memory(
+        (last - first) / spacing * (BYTES_PER_POINT + 8 * np.unique(result.path.values).size),
+        f"a spacing of {spacing:g} m between points",
+    )
+    return spacing * np.arange(np.ceil(first / spacing - 1e-9), np.floor(last / spacing + 1e-9) + 1)
 
 
 def road_wear(result: xr.Dataset, *, power: float = 4.0, percentile: float = PERCENTILE) -> FloatArray:
@@ -313,15 +343,21 @@ def _longest_run(flags: BoolArray) -> int:
     return int((edges[1::2] - edges[::2]).max(initial=0))
 
 
-def check_coupled(check: Checks, result: object) -> None:
-    """Refuse what is not the response of a vehicle in time.
+def check_coupled(check: Checks, result: Any, *also: str) -> None:
+    """Refuse what is not the response of a vehicle in time, or has no numbers for it.
 
     Parameters
     ----------
     check : Checks
         Checks that are going on.
-    result : object
+    result : Any
         What was given as a result.
+    *also : str
+        Variables that are needed beside contact forces, static loads and accelerations.
     """
-    if not {"contact_force", "static_load", "acceleration"} <= set(getattr(result, "data_vars", ())):
-        check.refuse("result", "must be the coupled response of a vehicle, with its contact forces")
+    names = ("contact_force", "static_load", "acceleration", *also)
+    if not (hasattr(result, "data_vars") and {"time", "contact", "dof"} <= set(result.dims)):
+        check.refuse("result", f"must be the coupled response of a vehicle, with {', '.join(names)}")
+        return
+    for flaw in flaws(result, names):
+        check.refuse("result", f"must be the coupled response of a vehicle in finite numbers, but {flaw}")

@@ -34,7 +34,8 @@ from movingfrf.paper.study import (
     scenario,
     timed,
 )
-from movingfrf.roughness.spectra import IsoRoad, fit_iso, iso_class, welch
+from movingfrf.roughness.fitting import fit_iso, welch
+from movingfrf.roughness.spectra import IsoRoad
 from movingfrf.wording import number
 
 if TYPE_CHECKING:
@@ -78,8 +79,7 @@ def profile(study: Study) -> Outcome:
     assert road is not None
     distance, elevation = np.asarray(road.profile.distance), np.asarray(road.profile.elevation)
     n, density = welch(elevation, float(distance[1] - distance[0]), segments=8)
-    level, waviness = fit_iso(n, density)
-    at_two, _ = fit_iso(n, density, waviness=2.0)
+    fit = fit_iso(n, density)
 
     figure, (above, below) = canvas(1, 2, 2.6, width_ratios=(3, 2))
     curve(above, distance, 1e3 * elevation, BLUE)
@@ -96,12 +96,17 @@ def profile(study: Study) -> Outcome:
         statements=[
             Statement(
                 '"The road surface grade is set to class A" (Fig. 13).',
-                f"So is the substitute. Fitted with the waviness 2 of the standard: {number(1e6 * at_two, 3)} × "
-                f"10⁻⁶ m³ at 0.1 cycle/m, class {iso_class(at_two)} (centre 16, limit 32).",
+                "So is the substitute. Fitted with the waviness 2 of the standard: "
+                f"{number(1e6 * fit.roughness_at_two, 3)} × 10⁻⁶ m³ at 0.1 cycle/m, class {fit.road_class} "
+                "(centre 16, limit 32).",
                 UNJUDGED,
             )
         ],
-        numbers={"roughness_m3": at_two, "fitted_waviness": waviness, "roughness_at_fitted_waviness_m3": level},
+        numbers={
+            "roughness_m3": fit.roughness_at_two,
+            "fitted_waviness": fit.waviness,
+            "roughness_at_fitted_waviness_m3": fit.roughness,
+        },
         substitutes=[ROUGHNESS],
         plots=[
             Plot(

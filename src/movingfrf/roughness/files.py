@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import FloatArray, ParameterError, checking, shown
+from movingfrf._checks import FloatArray, ParameterError, checking, option, shown
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf
 from movingfrf.roughness.formats.base import Column, Format, Record
@@ -149,8 +149,8 @@ def write_profile(
     Raises
     ------
     ValueError
-        If the format cannot be told, or cannot hold the profile: `crg` and `erd` need an even step, `crg` the
-        lateral position of each of several paths.
+        If the format cannot be told, is only read, or cannot hold the profile: `crg` and `erd` need an even step,
+        `crg` the lateral position of each of several paths.
     OSError
         If the file cannot be written.
 
@@ -163,20 +163,37 @@ def write_profile(
     [0.0, 1.0, 2.0, 3.0]
     """
     path = Path(file)
-    form = FORMATS.get(format) if format is not None else _by_ending(path)
-    if form is None:
-        given = f"there is no format {format!r}" if format is not None else "its ending does not tell the format"
-        raise ValueError(f"{path}: {given}; it is one of {', '.join(FORMATS)}")
-    if form.write is None:
-        writable = ", ".join(name for name, other in FORMATS.items() if other.write)
-        raise ValueError(f"{path}: {form.name} is only read, not written; written are {writable}")
+    writer(path, format=format, encoding=encoding)(profile, path)
+
+
+def writer(
+    file: Path, *, format: str | None = None, encoding: str | None = None
+) -> Callable[[Profile, Path], None]:
+    """Find what writes a profile in the format of a file, as `write_profile` does.
+
+    It writes wherever it is told to, while its refusals name `file`.
+    """
+    form = FORMATS.get(format) if format is not None else _by_ending(file)
+    written = [other for other in FORMATS.values() if other.write]
+    if form is None and format is not None:
+        known = ", ".join(other.name for other in written)
+        raise ValueError(f"{file}: there is no format {format!r}; it is one of {known}")
+    if form is None or form.write is None:
+        why = "its ending does not tell the format" if form is None else f"{form.name} is only read, not written"
+        endings = ", ".join(ending for other in written for ending in other.endings)
+        raise ValueError(f"{file}: {why}; written are files that end in {endings}")
     if encoding is not None and encoding not in form.encodings:
         known = ", ".join(filter(None, form.encodings)) or "none"
-        raise ValueError(f"{path}: {form.name} has no encoding {encoding!r}; it has {known}")
-    try:
-        form.write(profile, path, encoding if encoding is not None else form.encodings[0])
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+        raise ValueError(f"{file}: {form.name} has no encoding {encoding!r}; it has {known}")
+    write, chosen = form.write, encoding if encoding is not None else form.encodings[0]
+
+    def named(profile: Profile, place: Path) -> None:
+        try:
+            write(profile, place, chosen)
+        except ValueError as error:
+            raise ValueError(f"{file}: {error}") from None
+
+    return named
 
 
 def _by_ending(path: Path) -> Format | None:
@@ -200,16 +217,18 @@ def _recognised(path: Path, name: str | None) -> Format:
 def _on_paths(record: Record, across: FloatArray) -> Record:
     """Interpolate a grid at lateral positions."""
     if record.across is None:
-        raise ValueError("has no lateral positions, so `across` cannot choose among its paths")
+        raise ValueError(f"has no lateral positions, so {option('across')} cannot choose among its paths")
     order = np.argsort(record.across)
     grid = record.across[order]
     if grid.size != record.elevations.shape[1] or not np.isfinite(grid).all() or (np.diff(grid) == 0).any():
-        raise ValueError("must have one lateral position for each path, all different, for `across` to choose from")
+        raise ValueError(
+            f"must have one lateral position for each path, all different, for {option('across')} to choose from"
+        )
     outside = (across < grid[0] - ROUNDING) | (across > grid[-1] + ROUNDING)
     if outside.any():
         raise ValueError(
-            f"reaches from {grid[0]:g} m (right) to {grid[-1]:g} m (left), but `across` asks for "
-            f"{across[outside][0]:g} m"
+            f"reaches from {grid[0]:g} m (right) to {grid[-1]:g} m (left), but {option('across')} asks "
+            f"for {across[outside][0]:g} m"
         )
     if grid.size == 1:
         return record._replace(elevations=record.elevations[:, [0] * across.size], across=across, same_across=False)
@@ -230,7 +249,9 @@ def _cropped_rims(record: Record, *, sides: bool) -> Record:
     if sides:
         full = np.flatnonzero(~missing.any(axis=0))
         if not full.size:
-            raise ValueError("has no long section with an elevation at every station: choose paths by `across`")
+            raise ValueError(
+                f"has no long section with an elevation at every station: choose paths by {option('across')}"
+            )
         left, right = int(full[0]), int(full[-1]) + 1
     kept = np.flatnonzero(~missing[:, left:right].any(axis=1))
     if not kept.size:
@@ -273,13 +294,14 @@ def _completed(record: Record, repair_gaps: float | None) -> Record:
     if repair_gaps is None:
         raise ValueError(
             f"{record.place(first.first)}: no elevation {_at(record, first)}; in all {missing} elevations are "
-            f"missing in {len(gaps)} gaps, the longest {_long(longest)} {_at(record, longest)}. `repair_gaps` "
-            "fills gaps up to a length, `crop_rims` leaves out the rims of a grid"
+            f"missing in {len(gaps)} gaps, the longest {_long(longest)} {_at(record, longest)}. "
+            f"{option('repair_gaps')} fills gaps up to a length, {option('crop_rims')} leaves out the rims of a "
+            "grid"
         )
     if longest.length > repair_gaps:
         raise ValueError(
-            f"{record.place(longest.first)}: the gap {_at(record, longest)} is {_long(longest)}, and `repair_gaps` "
-            f"allows {repair_gaps:g} m"
+            f"{record.place(longest.first)}: the gap {_at(record, longest)} is {_long(longest)}, and "
+            f"{option('repair_gaps')} allows {repair_gaps:g} m"
         )
     elevations = record.elevations.copy()
     for path in {gap.path for gap in gaps}:
@@ -334,5 +356,4 @@ def _sentence(name: str, profile: Profile, record: Record) -> str:
     return (
         f"{name}: {stations.size} stations from {stations[0]:g} m to {stations[-1]:g} m every {spacing}, "
         f"{profile.paths} path(s), elevation {elevation.min():g} to {elevation.max():g} m, {record.understood}"
-        + "".join(f"; {step}" for step in record.steps)
     )

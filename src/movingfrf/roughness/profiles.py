@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from hashlib import blake2b
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -138,7 +139,7 @@ class Profile:
             steps = np.diff(self.stations)
             raise ValueError(
                 f"{what} needs stations at an even step, but they are {steps.min():.4g} to {steps.max():.4g} m "
-                "apart; resample the profile first"
+                "apart; resample the profile first, in Python by `resampled`, else by `movingfrf convert --step`"
             )
         return step
 
@@ -146,6 +147,15 @@ class Profile:
     def same_across(self) -> bool:
         """Whether all paths have the same elevation: there are no columns."""
         return np.ndim(self.elevation) == 1
+
+    @property
+    def alike(self) -> list[list[int]]:
+        """Numbers of the paths, those of equal elevation together: one list if all are equal."""
+        groups: dict[bytes, list[int]] = {}
+        for path, column in enumerate(self.columns.T):
+            # A sum with zero is contiguous, and knows one zero only.
+            groups.setdefault(blake2b(column + 0.0).digest(), []).append(path)
+        return list(groups.values())
 
     def along(self, path: int = 0) -> CubicSpline:
         """Elevation of one path as a function of distance: the cubic spline through its samples.

@@ -19,12 +19,6 @@ CLASS_CENTRES = {letter: 16e-6 * 4.0**n for n, letter in enumerate("ABCDEFGH")}
 # Measured roads lie between 1 and 4; powers far beyond overflow.
 LARGEST_WAVINESS = 10.0
 
-# Bands in which ISO 8608 smooths a spectrum [cycle/m]: octaves up to a centre of 1/32, thirds of octaves up to 1/4,
-# twelfths beyond, over the range that it fits, 0.011 to 2.83.
-SMOOTHING_EDGES = np.concatenate(
-    [2.0 ** np.array([-6.5, -5.5]), 2.0 ** (np.arange(-27, -9, 2) / 6), 2.0 ** (np.arange(-42, 37, 2) / 24)]
-)
-
 
 class Spectrum(Protocol):
     """A roughness spectrum: how much elevation lies at which spatial frequency."""
@@ -233,65 +227,3 @@ def iso_class(roughness: float) -> str:
     ('A', 'B')
     """
     return next((letter for letter, centre in CLASS_CENTRES.items() if roughness < 2 * centre), "H")
-
-
-def welch(elevation: FloatArray, step: float, *, segments: int = 8) -> tuple[FloatArray, FloatArray]:
-    """Estimate the one-sided spectrum of a uniformly sampled profile (Welch, Hann window, half overlap).
-
-    Parameters
-    ----------
-    elevation : ndarray, shape (distance,)
-        Elevation [m].
-    step : float
-        Distance between samples [m].
-    segments : int
-        Number of half-overlapping segments that the profile is cut into; each is freed of its linear trend.
-
-    Returns
-    -------
-    spatial_frequency : ndarray
-        Spatial frequency [cycle/m], without the lowest three lines: trend and window have taken from them.
-    density : ndarray
-        Spectral density [m³].
-    """
-    from scipy.signal import welch as scipy_welch
-
-    length = max(2 * len(elevation) // (segments + 1), 8)
-    n, density = scipy_welch(elevation, 1 / step, nperseg=min(length, len(elevation)), detrend="linear")
-    return n[3:], density[3:]
-
-
-def fit_iso(
-    spatial_frequency: FloatArray, density: FloatArray, *, waviness: float | None = None
-) -> tuple[float, float]:
-    """Fit roughness and waviness to an estimated spectrum, as ISO 8608 does.
-
-    The mean density of each band of `SMOOTHING_EDGES` enters a straight line in logarithms, over 0.011 to 2.83
-    cycle/m or the part of it that the estimate covers.
-
-    Parameters
-    ----------
-    spatial_frequency : ndarray
-        Spatial frequency [cycle/m].
-    density : ndarray
-        Spectral density [m³].
-    waviness : float, optional
-        Exponent to keep to: 2 for the class of ISO 8608. None fits it too.
-
-    Returns
-    -------
-    roughness : float
-        G_d at 0.1 cycle/m [m³]; nan if the estimate covers too little.
-    waviness : float
-        Exponent w.
-    """
-    band = np.digitize(spatial_frequency, SMOOTHING_EDGES)
-    used = [b for b in range(1, SMOOTHING_EDGES.size) if (band == b).any() and density[band == b].mean() > 0]
-    if len(used) < 2:
-        return float("nan"), float("nan")
-    log_n = np.array([np.log(spatial_frequency[band == b]).mean() for b in used]) - np.log(REFERENCE_FREQUENCY)
-    log_density = np.array([np.log(density[band == b].mean()) for b in used])
-    if waviness is not None:
-        return float(np.exp((log_density + waviness * log_n).mean())), waviness
-    slope, level = np.polyfit(log_n, log_density, 1)
-    return float(np.exp(level)), float(-slope)

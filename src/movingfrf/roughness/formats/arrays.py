@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import FloatArray
+from movingfrf._checks import FloatArray, option
 from movingfrf.roughness.formats.base import Column, Record, chosen, metres, scaled
 
 # What the package itself calls them.
@@ -61,13 +61,13 @@ def record(arrays: Mapping[str, Array], columns: Sequence[Column] | None, kind: 
     if columns is not None:
         picked = [names[n] for n in chosen(names, columns)]
         if len(picked) < 2:
-            raise ValueError("`columns` must name the stations and at least one array of elevations")
+            raise ValueError(f"{option('columns')} must name the stations and at least one array of elevations")
     else:
         picked = _recognised(arrays)
         if not picked:
             raise ValueError(
                 f"holds no arrays that are clearly stations and elevations: {there or 'nothing at all'}; name them "
-                "by `columns`"
+                f"by {option('columns')}"
             )
     stations = arrays[picked[0]].load().ravel()
     parts = [_by_station(arrays[name].load(), stations.size, name) for name in picked[1:]]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from movingfrf._checks import FloatArray
+from movingfrf._checks import FloatArray, option
 from movingfrf.roughness.profiles import Profile
 
 # A column of a file: its name, or its number counted from 0.
@@ -94,7 +94,8 @@ def metres(unit: str, what: str) -> float:
     if word not in METRES:
         raise ValueError(
             f"the unit {unit.strip()[:30]!r} of {what} is not known; lengths may be in "
-            f"{', '.join(dict.fromkeys(u for u in METRES if len(u) < 3))}; `columns` chooses other columns"
+            f"{', '.join(dict.fromkeys(u for u in METRES if len(u) < 3))}; "
+            f"{option('columns')} chooses other columns"
         )
     return METRES[word]
 

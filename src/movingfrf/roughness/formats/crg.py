@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from movingfrf._checks import option
 from movingfrf.roughness.formats.base import Column, Format, Record
 from movingfrf.roughness.profiles import Profile
 
@@ -31,7 +32,9 @@ STRIP = 1.0
 def read(path: Path, columns: Sequence[Column] | None) -> Record:
     """Read a grid of elevations; its long sections become paths, from left to right."""
     if columns is not None:
-        raise ValueError("is a grid: choose its paths by `across`, their lateral positions, not by columns")
+        raise ValueError(
+            f"is a grid: choose its paths by {option('across')}, their lateral positions, not by columns"
+        )
     crg = _library()
     try:
         # Its own verdicts come as Python warnings and a report; the errors among them are looked at below, as is
@@ -91,7 +94,8 @@ def _encoding(path: Path) -> str:
 
 def _words(road: Any, encoding: str) -> str:
     words = [
-        f"OpenCRG grid ({encoding}), {road.nv} long sections from {road.v_min:g} m (right) to {road.v_max:g} m"
+        f"OpenCRG grid ({encoding}), {road.nv} long sections from {road.v_max:g} m (left) to {road.v_min:g} m "
+        "(right)"
     ]
     if not road.is_straight:
         words.append("distance measured along the curved reference line")

@@ -1,0 +1,195 @@
+"""The spectrum of a profile: its estimate, and the straight line in logarithms that ISO 8608 fits to it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._checks import FloatArray
+from movingfrf.roughness.spectra import CLASS_CENTRES, REFERENCE_FREQUENCY, band_in_words, iso_class
+
+# Bands in which ISO 8608 smooths a spectrum [cycle/m]: octaves up to a centre of 1/32, thirds of octaves up to 1/4,
+# twelfths beyond, over the range that it fits, 0.011 to 2.83.
+SMOOTHING_EDGES = np.concatenate(
+    [2.0 ** np.array([-6.5, -5.5]), 2.0 ** (np.arange(-27, -9, 2) / 6), 2.0 ** (np.arange(-42, 37, 2) / 24)]
+)
+
+# Content ends where three bands in a row lie below a quarter of the line through those before: through a decade of
+# them, without the last half octave, in which a spline or a filter begins to fall. It ends with the last band above
+# two thirds of the line. A band of one line estimated from eight half-overlapping pieces scatters by a third.
+IN_A_ROW, CLIFF, KEPT = 3, float(np.log(4.0)), float(np.log(1.5))
+DECADE, SHOULDER = float(np.log(10.0)), float(np.log(2.0)) / 2
+
+# Bands that a line begins with.
+FEWEST_BANDS = 6
+
+# A fit takes at least so many octaves, and reaches to within one of 0.1 cycle/m.
+LEAST_OCTAVES, REACH = 2, 2.0
+
+# Root mean square of what the line leaves of the logarithms, beyond which a spectrum is no power law.
+LARGEST_MISFIT = float(np.log(1.8))
+
+# From one class to the next, in the logarithm of the density.
+CLASS_WIDTH = float(np.log(CLASS_CENTRES["B"] / CLASS_CENTRES["A"]))
+
+
+class IsoFit(NamedTuple):
+    """A power law fitted to an estimated spectrum, as ISO 8608 does it, or the reason why there is none.
+
+    Parameters
+    ----------
+    roughness : float
+        Density at 0.1 cycle/m [m³]; nan without a fit.
+    waviness : float
+        Exponent w, dimensionless; nan without a fit.
+    roughness_at_two : float
+        Density at 0.1 cycle/m of the fit with the waviness 2 of the standard [m³]; nan without a fit.
+    band : tuple of float
+        Spatial frequencies between which the profile has content and was fitted [cycle/m].
+    reason : str
+        Why there is no fit; empty where there is one.
+    """
+
+    roughness: float
+    waviness: float
+    roughness_at_two: float
+    band: tuple[float, float]
+    reason: str
+
+    @property
+    def road_class(self) -> str:
+        """Class of ISO 8608, that of the waviness 2; empty without a fit."""
+        return "" if self.reason else iso_class(self.roughness_at_two)
+
+    @property
+    def doubt(self) -> str:
+        """Why the class means little: the waviness is so far from 2 that the line passes another; or nothing."""
+        if self.reason or abs(np.log(self.roughness / self.roughness_at_two)) < CLASS_WIDTH:
+            return ""
+        return (
+            f"the class is of little meaning: the waviness, {self.waviness:.2f}, is so far from the 2 of ISO 8608 "
+            f"that the fitted line passes 0.1 cycle/m in class {iso_class(self.roughness)}"
+        )
+
+    @property
+    def covered(self) -> str:
+        """The band, in words."""
+        return _in_words(self.band)
+
+    def density(self, spatial_frequency: FloatArray) -> FloatArray:
+        """Density of the fitted line.
+
+        Parameters
+        ----------
+        spatial_frequency : ndarray
+            Spatial frequency [cycle/m].
+
+        Returns
+        -------
+        ndarray
+            G_d [m³].
+        """
+        fitted: FloatArray = self.roughness * (spatial_frequency / REFERENCE_FREQUENCY) ** -self.waviness
+        return fitted
+
+
+def welch(elevation: FloatArray, step: float, *, segments: int = 8) -> tuple[FloatArray, FloatArray]:
+    """Estimate the one-sided spectrum of a uniformly sampled profile (Welch, Hann window, half overlap).
+
+    Parameters
+    ----------
+    elevation : ndarray, shape (distance,)
+        Elevation [m].
+    step : float
+        Distance between samples [m].
+    segments : int
+        Number of half-overlapping segments that the profile is cut into; each is freed of its linear trend.
+
+    Returns
+    -------
+    spatial_frequency : ndarray
+        Spatial frequency [cycle/m], without the lowest three lines: trend and window have taken from them.
+    density : ndarray
+        Spectral density [m³].
+    """
+    from scipy.signal import welch as scipy_welch
+
+    length = max(2 * len(elevation) // (segments + 1), 8)
+    n, density = scipy_welch(elevation, 1 / step, nperseg=min(length, len(elevation)), detrend="linear")
+    return n[3:], density[3:]
+
+
+def fit_iso(spatial_frequency: FloatArray, density: FloatArray) -> IsoFit:
+    """Fit roughness and waviness to an estimated spectrum, as ISO 8608 does, where the profile has content.
+
+    The mean density of each band of `SMOOTHING_EDGES` enters a straight line in logarithms, over the part of 0.011
+    to 2.83 cycle/m that the estimate covers and in which there is content: a profile that was filtered, resampled
+    to a shorter step, or made from a spectrum with a narrower band has less of it.
+
+    Parameters
+    ----------
+    spatial_frequency : ndarray
+        Spatial frequency [cycle/m].
+    density : ndarray
+        Spectral density [m³].
+
+    Returns
+    -------
+    IsoFit
+        The fit, or the reason why there is none: content that does not reach 0.1 cycle/m, or a spectrum that is no
+        power law.
+    """
+    band = np.digitize(spatial_frequency, SMOOTHING_EDGES)
+    used = [b for b in range(1, SMOOTHING_EDGES.size) if (band == b).any() and density[band == b].mean() > 0]
+    if len(used) < FEWEST_BANDS:
+        return _none(
+            (np.nan, np.nan), "the profile is level, or too short for a spectrum between 0.011 and 2.83 cycle/m"
+        )
+    log_n = np.array([np.log(spatial_frequency[band == b]).mean() for b in used])
+    log_density = np.array([np.log(density[band == b].mean()) for b in used])
+    first, end = _content(log_n, log_density)
+    log_n, log_density = log_n[first:end], log_density[first:end]
+    inside = np.isin(band, used[first:end])
+    covered = (float(spatial_frequency[inside].min()), float(spatial_frequency[inside].max()))
+    near = covered[0] <= REACH * REFERENCE_FREQUENCY and covered[1] >= REFERENCE_FREQUENCY / REACH
+    if not near or covered[1] < 2**LEAST_OCTAVES * covered[0]:
+        need = f"{LEAST_OCTAVES} octaves that reach to within one of {REFERENCE_FREQUENCY} cycle/m"
+        return _none(covered, f"a fit takes {need}, and there is content over {_in_words(covered)} alone")
+    log_n -= np.log(REFERENCE_FREQUENCY)
+    slope, level = np.polyfit(log_n, log_density, 1)
+    if np.sqrt(np.mean((log_density - level - slope * log_n) ** 2)) > LARGEST_MISFIT:
+        return _none(covered, f"over {_in_words(covered)} the spectrum is no power law")
+    at_two = float(np.exp((log_density + 2 * log_n).mean()))
+    return IsoFit(float(np.exp(level)), float(-slope), at_two, covered, "")
+
+
+def _in_words(band: tuple[float, float]) -> str:
+    return band_in_words((float(f"{band[0]:.2g}"), float(f"{band[1]:.3g}")))
+
+
+def _none(band: tuple[float, float], reason: str) -> IsoFit:
+    return IsoFit(np.nan, np.nan, np.nan, band, reason)
+
+
+def _content(log_n: FloatArray, log_density: FloatArray) -> tuple[int, int]:
+    """Find the bands in which there is content: the first, and the one after the last."""
+    # Bands that surely have content: the highest spectrum of the slope, which is level on a usual road.
+    sloping = np.convolve(log_density + 2 * log_n, np.ones(FEWEST_BANDS), "valid")
+    start = int(sloping.argmax())
+    end = start + _until_cliff(log_n[start:], log_density[start:])
+    return end - _until_cliff(-log_n[:end][::-1], log_density[:end][::-1]), end
+
+
+def _until_cliff(place: FloatArray, height: FloatArray) -> int:
+    """Count the points before those that fall far below the line of the ones before them."""
+    for end in range(FEWEST_BANDS, place.size):
+        last = max(int(np.searchsorted(place, place[end - 1] - SHOULDER)), FEWEST_BANDS)
+        near = slice(min(int(np.searchsorted(place, place[last - 1] - DECADE)), last - FEWEST_BANDS), last)
+        slope, level = np.polyfit(place[near], height[near], 1)
+        below = level + slope * place - height
+        # Long waves end where the density falls towards them: many roads have less of them than the line has.
+        beyond = max(slope, 0.0) * (place[end : end + IN_A_ROW] - place[end - 1])
+        if (below[end : end + IN_A_ROW] - beyond > CLIFF).all():
+            return int(np.flatnonzero(below[:end] < KEPT)[-1]) + 1
+    return place.size
