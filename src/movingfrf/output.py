@@ -7,8 +7,8 @@ import errno
 import io
 import json
 import os
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -45,11 +45,12 @@ def replacing(folder: Path) -> Iterator[Path]:
         If the folder cannot be made or written.
     """
     missing = [parent for parent in (folder, *folder.parents) if not parent.exists()]
-    folder.mkdir(parents=True, exist_ok=True)
-    done = False
+    # Named before it is made: whatever interrupts finds it.
+    temporary, done = folder / f".partial-{secrets.token_hex(4)}", False
     try:
-        temporary = Path(tempfile.mkdtemp(prefix=".partial-", dir=folder))
+        folder.mkdir(parents=True, exist_ok=True)
         try:
+            temporary.mkdir()
             yield temporary
             written = {file: folder / file.relative_to(temporary) for file in sorted(temporary.rglob("*"))}
             for file, target in written.items():
