@@ -162,7 +162,7 @@ def test_interruption_leaves_nothing(tmp_path):
         time.sleep(0.05)
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=60)
-    assert process.returncode == 130
+    assert process.returncode == 130, told
     assert "interrupted" in told
     assert "Traceback" not in told
     assert not output.exists()

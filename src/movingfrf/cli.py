@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import signal
 import sys
 import textwrap
@@ -190,6 +191,7 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
     with stages:
         stages.report("loading", 0.0)
         import matplotlib.figure  # noqa: F401
+        import scipy.interpolate  # noqa: F401
         import xarray  # noqa: F401
 
         from movingfrf.metrics.basic import measures
@@ -845,7 +847,14 @@ def main(arguments: list[str] | None = None) -> int:
 def entry() -> None:
     """Run the command as a process; told to end, it leaves nothing half done."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
-    sys.exit(main())
+    status = main()
+    if status == INTERRUPTED:
+        # An interrupt that strikes while a module is being loaded leaves a mark by which Python ends itself with
+        # the signal after all, whatever the status.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+    sys.exit(status)
 
 
 if __name__ == "__main__":

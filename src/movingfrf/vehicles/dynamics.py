@@ -53,20 +53,25 @@ class Matrices(NamedTuple):
 
     def times(self, omega: ComplexArray, columns: ComplexArray) -> ComplexArray:
         """Multiply with a column per frequency, shapes (i, frequency) and (j, frequency)."""
-        # Horner's scheme: no column is multiplied with a power of iω twice.
-        s = 1j * omega
-        product: ComplexArray = np.zeros((len(self.constant), omega.size), complex)
-        for part in reversed(self):
-            if product.any():
-                product *= s
-            if part.any():
-                product += part @ columns
-        return product
+        return _horner(1j * omega, [part @ columns if part.any() else None for part in self], len(self.constant))
 
     def at(self, omega: ComplexArray) -> ComplexArray:
         """Evaluate at some frequencies [rad/s], shape (frequency, *coefficient)."""
         s: ComplexArray = 1j * omega[:, None, None]
+        if not self.square.any():
+            return self.constant + s * self.linear
         return self.constant + s * (self.linear + s * self.square)
+
+
+def _horner(s: ComplexArray, terms: Sequence[ComplexArray | None], rows: int) -> ComplexArray:
+    """Σ sᵏ terms[k], each of shape (row, frequency), None for zero; the terms are used up."""
+    total: ComplexArray | None = None
+    for term in reversed(terms):
+        if total is not None:
+            total *= s
+        if term is not None:
+            total = term if total is None else np.add(total, term, out=total)
+    return np.zeros((rows, s.size), complex) if total is None else total
 
 
 class Split(NamedTuple):
@@ -152,8 +157,10 @@ class Part:
     def response(self, omega: ComplexArray, displacement: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Motion (dof, frequency) and contact force for a displacement, both (contact, frequency)."""
         free = self._free(omega, displacement)
-        moved = self.motion.free @ free
-        if self.motion.prescribed.any():
+        if not self.motion.prescribed.any():
+            moved = free
+        else:
+            moved = self.motion.free @ free
             moved += self.motion.prescribed @ displacement
         force = self.entry.transposed().times(omega, free)
         force -= self.direct.times(omega, displacement)
@@ -167,7 +174,8 @@ class Part:
             pushed = self.entry.times(omega, displacement)
             return np.linalg.solve(self.own.at(omega), pushed.T[:, :, None])[:, :, 0].T
         poles, shapes, weights = self.modes
-        modal = weights @ self.entry.times(omega, displacement)
+        entered = (weights @ part @ displacement if part.any() else None for part in self.entry)
+        modal = _horner(1j * omega, list(entered), len(poles))
         modal *= _admittance(omega, poles)
         return shapes @ modal
 
@@ -186,13 +194,8 @@ class Part:
         for power_out, out in self.entry.terms():
             for power_in, into in self.entry.terms():
                 carried[power_out + power_in] += (out.T @ shapes)[:, None, :] * (weights @ into).T
-        s = 1j * omega
-        summed = np.zeros((count * count, omega.size), complex)
-        for residues in carried[::-1]:
-            if summed.any():
-                summed *= s
-            if residues.any():
-                summed += residues.reshape(count * count, -1) @ admittance
+        terms = [part.reshape(count * count, -1) @ admittance if part.any() else None for part in carried]
+        summed = _horner(1j * omega, terms, count * count)
         direct -= summed.T.reshape(direct.shape)
         return direct
 
