@@ -673,8 +673,8 @@ FAULTS = [
     Fault(
         "rounded window of the IRI",
         "metrics/iri.py",
-        "missing = int(np.ceil((window - 1) / 2 - 1e-6)) - 1, (window**2 - 1) / 12",
-        "missing = int(np.ceil((window - 1) / 2 - 1e-6)) - 1, (round(window) ** 2 - 1) / 12",
+        "- 1, 0), (window**2 - 1) / 12",
+        "- 1, 0), (round(window) ** 2 - 1) / 12",
     ),
     Fault("average counted twice", "metrics/iri.py", "(window**2 - 1) / 12", "window**2 / 12"),
     Fault("car starts level", "metrics/iri.py", "zi=[-keep * gain * start]", "zi=[0.0 * gain]"),

@@ -235,9 +235,10 @@ def _modes(car: ReferenceCar) -> tuple[ComplexArray, ComplexArray, ComplexArray]
 
 def _weights(window: float) -> FloatArray:
     """Weights that average slopes over a window of so many steps; each slope is an average over one already."""
-    if window <= 1:
+    if not window or abs(window - 1) < 1e-9:
         return np.ones(1)
-    inside, missing = int(np.ceil((window - 1) / 2 - 1e-6)) - 1, (window**2 - 1) / 12
+    # Of a window shorter than a step the end weights are negative: they undo what the step averages too much.
+    inside, missing = max(int(np.ceil((window - 1) / 2 - 1e-6)) - 1, 0), (window**2 - 1) / 12
     # The end weight with which the second moment of the weights, in steps squared, is what a window of that length
     # has beyond a window of one step.
     whole = np.arange(-inside, inside + 1)
