@@ -26,14 +26,14 @@ import numpy as np
 import scipy.fft
 
 import movingfrf as mf
-from movingfrf.comparison import Comparison, Point, ratios
-from movingfrf.comparison_report import tables
-from movingfrf.page import Table
-from movingfrf.reference.marching import March, law_of
-from movingfrf.reference.schemes import SCHEMES
+from movingfrf.reports.page import Table
+from movingfrf.results.labels import COUPLED, labelled
 from movingfrf.roughness.excitation import excite
-from movingfrf.scenario import Scenario, parse_scenario
-from movingfrf.schema import COUPLED, labelled
+from movingfrf.scenarios.scenario import Scenario, parse_scenario
+from movingfrf.stepping.marching import March, law_of
+from movingfrf.stepping.schemes import SCHEMES
+from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
+from movingfrf.studies.comparison.page import tables
 
 METHODS = [
     *("moving-frf", "moving-frf-fe", "moving-frf-fe-plain", "duhamel"),
@@ -75,7 +75,7 @@ def struck_roads() -> None:
 
 def reference_case():
     """Read the reference case: what `movingfrf new` writes."""
-    text = files("movingfrf").joinpath("templates", "scenario.toml").read_text(encoding="utf-8")
+    text = files("movingfrf").joinpath("scenarios", "templates", "scenario.toml").read_text(encoding="utf-8")
     return parse_scenario(text, name="reference case")
 
 

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from movingfrf.roughness.files import read_profile, write_profile
-from movingfrf.roughness.profiles import Profile
+from movingfrf.roughness.profile import Profile
 
 TIMES, FLOOR, PATIENCE = 10, 2**27, 30.0
 

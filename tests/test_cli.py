@@ -13,8 +13,8 @@ import pytest
 import xarray as xr
 from rich.console import Console
 
-from movingfrf.cli import _cell, _head, _print_columns, main
-from movingfrf.metrics.basic import Measure
+from movingfrf.commands.main import _cell, _head, _print_columns, main
+from movingfrf.metrics.measures import Measure
 from tests.test_scenario import LOADS, edited
 
 SHORT = edited(duration=2.0)
@@ -107,9 +107,9 @@ def test_an_earlier_result_and_other_files_survive_a_failed_run(scenario, tmp_pa
     def fails(*_args, **_kwargs):
         raise OSError(28, "No space left on device")
 
-    import movingfrf.report
+    import movingfrf.reports.coupled
 
-    monkeypatch.setattr(movingfrf.report, "render", fails)
+    monkeypatch.setattr(movingfrf.reports.coupled, "render", fails)
     scenario.write_text(edited(duration=3.0))
     assert main(["run", str(scenario), "--output", str(output)]) == 2
     assert {file.name: file.read_bytes() for file in output.iterdir()} == before

@@ -15,12 +15,19 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf import comparison_output as output
-from movingfrf.cli import main
-from movingfrf.comparison import Case, Point, converged, maximum_error, peak_memory, relative_l2, time_at
-from movingfrf.comparison_report import render
-from movingfrf.methods import elements
-from movingfrf.scenario import parse_scenario
+from movingfrf.commands.main import main
+from movingfrf.scenarios.scenario import parse_scenario
+from movingfrf.studies.comparison.comparison import (
+    Point,
+    converged,
+    maximum_error,
+    peak_memory,
+    relative_l2,
+    time_at,
+)
+from movingfrf.studies.comparison.files import as_json, convergence_as_json, curve_as_csv, table_as_csv
+from movingfrf.studies.comparison.methods import Case, elements
+from movingfrf.studies.comparison.page import render
 from tests.test_scenario import LOADS, edited
 
 # Long enough for the rough road to be met by both axles.
@@ -128,18 +135,18 @@ def test_errors_are_those_of_the_worst_channel():
 
 
 def test_what_is_written(found):
-    table = json.loads(output.as_json(found))
+    table = json.loads(as_json(found))
     assert set(METHODS) <= set(table)
     for figures in table.values():
         assert {"setup_s", "solve_s", "peak_bytes", "relative_l2"} <= set(figures)
         assert set(figures["relative_l2"]) == set(QUANTITIES)
-    written = json.loads(output.convergence_as_json(found))
+    written = json.loads(convergence_as_json(found))
     assert written["converged_answer"]["movement_relative_l2"].keys() == set(QUANTITIES)
     assert written["ratio_at_equal_error"]["0.001"]["moving-frf"] == pytest.approx(1.0)
     assert len(written["error_over_time"]) == len(found.curve)
     for text, count in (
-        (output.table_as_csv(found), len(found.rows)),
-        (output.curve_as_csv(found), len(found.curve)),
+        (table_as_csv(found), len(found.rows)),
+        (curve_as_csv(found), len(found.curve)),
     ):
         read = np.genfromtxt(io.StringIO(text), delimiter=",", names=True, dtype=None, encoding="utf-8")
         assert read.size == count

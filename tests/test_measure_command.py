@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.cli import main
-from movingfrf.output import load, save
+from movingfrf.commands.main import main
+from movingfrf.results.files import load, save
 
 
 @pytest.fixture(scope="module")

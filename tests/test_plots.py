@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import movingfrf as mf
-from movingfrf import plots
+from movingfrf.reports import plots
 
 
 @pytest.fixture(scope="module")

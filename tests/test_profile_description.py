@@ -10,9 +10,9 @@ import pytest
 import scipy.signal
 
 import movingfrf as mf
-from movingfrf.cli import main
-from movingfrf.profile_description import as_dict
-from movingfrf.profile_report import render
+from movingfrf.commands.main import main
+from movingfrf.metrics.profile import as_dict
+from movingfrf.reports.profile import render
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, welch
 
 DATA = Path(__file__).parents[2] / "shared" / "data"

@@ -9,9 +9,9 @@ import pytest
 import xarray as xr
 
 import movingfrf as mf
-from movingfrf.cli import main
-from movingfrf.random_measures import random_measures
-from movingfrf.random_report import drawing_frequencies, paths, render
+from movingfrf.commands.main import main
+from movingfrf.metrics.random import random_measures
+from movingfrf.reports.random import drawing_frequencies, paths, render
 from tests.helpers import DAMPED, FULL_TRUCK
 from tests.test_scenario import LOADS, TEMPLATE
 

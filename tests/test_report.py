@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf import illustrations
-from movingfrf.metrics.basic import measures
-from movingfrf.report import render
-from movingfrf.wording import number
+from movingfrf._basics.wording import number
+from movingfrf.metrics.measures import measures
+from movingfrf.reports import illustrations
+from movingfrf.reports.coupled import render
 
 ROAD = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9), mf.Spring(stiffness=8e6, damping=3e4))
 CAR = mf.quarter_car(

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.roads import ROADS, SPECTRA
-from movingfrf.scenario import KINDS, parse_scenario
+from movingfrf.scenarios.roads import ROADS, SPECTRA
+from movingfrf.scenarios.scenario import KINDS, parse_scenario
 
 CAR = """
 [guideway]
@@ -256,7 +256,7 @@ def test_keys_are_the_keywords_of_python():
 
 @pytest.mark.parametrize("kind", ["german_track", "iso_road"])
 def test_what_a_road_was_made_from_is_told_and_not_fitted(kind):
-    from movingfrf.describe import described
+    from movingfrf.scenarios.description import described
 
     scenario = parse_scenario(f'{CAR}[roughness]\nkind = "{kind}"\n{SPECTRUM_KINDS[kind][0]}')
     lines = dict(dict(described(scenario))["Roughness"])

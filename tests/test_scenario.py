@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import movingfrf as mf
-from movingfrf.scenario import KINDS, parse_scenario
+from movingfrf.scenarios.scenario import KINDS, parse_scenario
 
-TEMPLATE = files("movingfrf").joinpath("templates", "scenario.toml").read_text(encoding="utf-8")
+TEMPLATE = files("movingfrf").joinpath("scenarios", "templates", "scenario.toml").read_text(encoding="utf-8")
 
 LOADS = """
 [guideway]
@@ -38,7 +38,7 @@ duration = 2.0
 """
 
 
-LOADS_TEMPLATE = files("movingfrf").joinpath("templates", "loads.toml").read_text(encoding="utf-8")
+LOADS_TEMPLATE = files("movingfrf").joinpath("scenarios", "templates", "loads.toml").read_text(encoding="utf-8")
 
 
 def faults(text, **where):

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.cli import main
-from movingfrf.methods import chosen
-from movingfrf.scenario import KINDS, named_vehicle, parse_scenario
+from movingfrf.commands.main import main
+from movingfrf.scenarios.scenario import KINDS, named_vehicle, parse_scenario
+from movingfrf.studies.comparison.methods import chosen
 from movingfrf.vehicles.catalogue import CATALOGUE
 from tests.helpers import HALF_TRUCK
 

@@ -6,13 +6,13 @@ from pathlib import Path
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from movingfrf import plots
-from movingfrf.scenario import parse_scenario
+from movingfrf.reports import plots
+from movingfrf.scenarios.scenario import parse_scenario
 
 
 def main() -> None:
     """Draw the reference case: contact forces and deflections, five seconds of them."""
-    text = files("movingfrf").joinpath("templates", "scenario.toml").read_text(encoding="utf-8")
+    text = files("movingfrf").joinpath("scenarios", "templates", "scenario.toml").read_text(encoding="utf-8")
     result = parse_scenario(text).run()
     figure = Figure(figsize=(9.6, 4.6), layout="constrained", dpi=110)
     FigureCanvasAgg(figure)

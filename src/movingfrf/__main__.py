@@ -1,5 +1,7 @@
 """`python -m movingfrf` is the command `movingfrf`."""
 
-from movingfrf.cli import entry
+from __future__ import annotations
+
+from movingfrf.commands.main import entry
 
 entry()

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.metrics.basic import assess
-from movingfrf.random_measures import random_measures
-from movingfrf.schema import COUPLED, labelled
+from movingfrf.metrics.measures import assess
+from movingfrf.metrics.random import random_measures
+from movingfrf.results.labels import COUPLED, labelled
 from tests.helpers import DAMPED
 
 PAVEMENT = DAMPED["euler_bernoulli_winkler"]

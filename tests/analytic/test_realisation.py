@@ -11,7 +11,7 @@ from scipy.signal import csd, welch
 from scipy.stats import chi2, kstest, laplace
 
 import movingfrf as mf
-from movingfrf.roughness.coherence import presumed
+from movingfrf.roughness.spectra.coherence import presumed
 
 SPECTRA = [
     mf.IsoRoad.of_class("A"),

@@ -20,7 +20,7 @@ def test_class_centres():
 
 
 def test_class_limits():
-    from movingfrf.roughness.spectra import iso_class
+    from movingfrf.roughness.spectra.iso import iso_class
 
     for letter, limit in zip("ABCDEFG", 32e-6 * 4.0 ** np.arange(7), strict=True):
         assert iso_class(0.99 * limit) == letter

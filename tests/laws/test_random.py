@@ -15,12 +15,12 @@ from scipy.stats import norm
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import movingfrf as mf
-from movingfrf.coupling import solve_contacts
 from movingfrf.metrics.fatigue import METHODS
-from movingfrf.quadrature import resolved
-from movingfrf.random_measures import random_measures
-from movingfrf.random_vibration import peak_factor
-from movingfrf.schema import RANDOM_QUANTITIES
+from movingfrf.metrics.random import random_measures
+from movingfrf.response.quadrature import resolved
+from movingfrf.response.random import peak_factor
+from movingfrf.response.solve import solve_contacts
+from movingfrf.results.labels import RANDOM_QUANTITIES
 from tests.helpers import DAMPED, QUARTER_CAR, QUARTER_TRUCK, UNDAMPED, VEHICLES
 
 pytestmark = pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
@@ -512,7 +512,7 @@ def test_a_resonance_without_damping_has_no_mean_square():
 @pytest.mark.parametrize(("speed", "band"), [(1e-9, "2e-11 to 5e-09"), (1e8, r"2e\+06 to 5e\+08")])
 def test_rounding_is_not_blamed_on_damping(monkeypatch, speed, band):
     """At speeds at which the band lies nowhere near the vehicle; given up early, since it never ends well."""
-    monkeypatch.setattr("movingfrf.quadrature.MOST_PANELS", 500)
+    monkeypatch.setattr("movingfrf.response.quadrature.MOST_PANELS", 500)
     with pytest.raises(
         mf.SolveError, match=f"near .* Hz: no vibration of the vehicle is without .* rounding .* is {band} Hz"
     ):
@@ -586,7 +586,7 @@ def test_many_small_matrices_are_solved_by_one_thread(monkeypatch):
         seen.extend(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
         return solve_contacts(*arguments)
 
-    monkeypatch.setattr("movingfrf.transfers.solve_contacts", watched)
+    monkeypatch.setattr("movingfrf.response.transfer.solve_contacts", watched)
     with threadpool_limits(limits=2):
         respond("three_axles", coherence=None)
     assert set(seen) == {1}

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf import forces
-from movingfrf.spectral import SpectralGrid
+from movingfrf.response.line import SpectralGrid
+from movingfrf.scenarios import forces
 from tests.helpers import DAMPED, HALF_TRUCK
 
 ROAD = DAMPED["euler_bernoulli_winkler"]

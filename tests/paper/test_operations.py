@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.paper import operations
-from movingfrf.spectral import SpectralGrid
+from movingfrf.response.line import SpectralGrid
+from movingfrf.studies.paper import operations
 from tests.helpers import DAMPED, difference
 
 TRACK = DAMPED["euler_bernoulli_winkler"]
@@ -121,7 +121,7 @@ def stepped(road, steps, compiled=None):
 
 def counting_march(monkeypatch, count, taken):
     """Put in place of `compiled.march` its own source, run by Python with numbers that count."""
-    from movingfrf.reference import compiled
+    from movingfrf.stepping import compiled
 
     functions = {name: f.py_func for name, f in vars(compiled).items() if hasattr(f, "py_func")}
 

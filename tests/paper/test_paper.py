@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from movingfrf.cli import main
-from movingfrf.output import replacing
-from movingfrf.paper.items import ITEMS, chosen, reproduce
-from movingfrf.paper.load import _enough
-from movingfrf.paper.outcome import FAILS, HOLDS, PARTLY, SHOWN, UNJUDGED
-from movingfrf.paper.report import write
-from movingfrf.paper.road import _falls_from
-from movingfrf.paper.study import SCENARIOS, Study, scenario
+from movingfrf.commands.main import main
+from movingfrf.results.files import replacing
+from movingfrf.studies.paper.items import ITEMS, chosen, reproduce
+from movingfrf.studies.paper.load import _enough
+from movingfrf.studies.paper.outcome import FAILS, HOLDS, PARTLY, SHOWN, UNJUDGED
+from movingfrf.studies.paper.report import write
+from movingfrf.studies.paper.road import _falls_from
+from movingfrf.studies.paper.study import SCENARIOS, Study, scenario
 
 
 @pytest.fixture(scope="module")

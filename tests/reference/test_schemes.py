@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import movingfrf as mf
-from movingfrf.reference.schemes import SCHEMES
+from movingfrf.stepping.schemes import SCHEMES
 from tests.helpers import DAMPED, VEHICLES, apart, observed_order
 
 ORDER = 0.1

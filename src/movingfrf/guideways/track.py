@@ -8,7 +8,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import Checks, ComplexArray, checking
+from movingfrf._basics.checks import Checks, ComplexArray, checking
 from movingfrf.guideways.critical import first_stationary_velocity, speed_of_greatest_deflection
 from movingfrf.guideways.waves import Ratio, polynomial, residue_sum, total
 
@@ -58,7 +58,7 @@ class EulerBernoulliBeam:
     >>> beam = EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9)
     >>> EulerBernoulliBeam(bending_stiffness=-1.0, mass=711.9)
     Traceback (most recent call last):
-    movingfrf._checks.ParameterError: bending_stiffness must be positive, got -1.0 N m²
+    movingfrf._basics.checks.ParameterError: bending_stiffness must be positive, got -1.0 N m²
     """
 
     bending_stiffness: float

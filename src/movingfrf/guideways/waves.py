@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from movingfrf._checks import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray, SolveError
+from movingfrf._basics.checks import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray, SolveError
 
 # Below this speed [m/s] the moving frame differs from the fixed one by rounding errors, while the roots that
 # run away to infinity as v → 0 (one per κⁿ that v alone keeps alive) begin to cost digits.
@@ -29,7 +29,6 @@ REAL_WITHIN, MERGED_WITHIN = 1e6, 1e4
 
 # A root whose imaginary part is more than this share of its magnitude needs no such care.
 CLEARLY_OFF = 1e-3
-
 
 # Newton steps on a root: the last one moves it by less than this, and squares the error.
 MOST_STEPS, CONVERGED = 4, 1e-9

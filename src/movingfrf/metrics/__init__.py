@@ -1,1 +1,1 @@
-"""From results to numbers."""
+"""Anything becomes numbers: histories, spectra, profiles and guideways."""

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import Checks, ComplexArray, FloatArray, checking, shown
+from movingfrf._basics.checks import Checks, ComplexArray, FloatArray, checking, shown
 from movingfrf.metrics.loads import check_coupled
 
 if TYPE_CHECKING:
     import xarray as xr
+
 
 # Limits beyond which the rms alone understates a vibration (ISO 2631-1, 6.2.1 and 6.3.3).
 CREST_LIMIT, MTVV_LIMIT, VDV_LIMIT = 9.0, 1.5, 1.75

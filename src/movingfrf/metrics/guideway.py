@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import ComplexArray, FloatArray, NumberArray, checking
-from movingfrf.guideways.base import Guideway, require_guideway
+from movingfrf._basics.checks import ComplexArray, FloatArray, NumberArray, checking
+from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import in_moving_frame, wavenumbers
 
 if TYPE_CHECKING:
     import xarray as xr
+
 
 # Points of a decay-rate measurement in sleeper spacings, and the spacing without sleepers [m] (EN 15461).
 BAYS = np.array(

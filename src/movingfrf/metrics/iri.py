@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import ComplexArray, FloatArray, checking
-from movingfrf.roughness.profiles import Profile
+from movingfrf._basics.checks import ComplexArray, FloatArray, checking
+from movingfrf.roughness.profile import Profile
 
 # Speed at which both indices are defined [m/s].
 SPEED = 80 / 3.6

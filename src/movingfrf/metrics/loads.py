@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import BoolArray, Checks, FloatArray, checking, require_memory
-from movingfrf.schema import flaws
+from movingfrf._basics.checks import BoolArray, Checks, FloatArray, checking, require_memory
+from movingfrf.results.labels import flaws
 
 if TYPE_CHECKING:
     import xarray as xr
+
 
 # Share of the road points that bear at most the aggregate force by which a road is judged.
 PERCENTILE = 95.0

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from movingfrf._checks import FloatArray, checking
-from movingfrf.roughness.profiles import Profile
+from movingfrf._basics.checks import FloatArray, checking
+from movingfrf.roughness.profile import Profile
 
 # Stations nearer to each other than this share of the smallest step count as one.
 SAME_STATION = 1e-6

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import FloatArray
-from movingfrf.roughness.profiles import Profile
-from movingfrf.smooth import smooth_step, smooth_step_slope
+from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.smooth import smooth_step, smooth_step_slope
+from movingfrf.roughness.profile import Profile
 
 # Relative slack in the comparison of two lengths that were computed in different ways.
 SLACK = 1e-9

@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import FloatArray, ParameterError, checking, option, shown
+from movingfrf._basics.checks import FloatArray, ParameterError, checking, option, shown
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf
 from movingfrf.roughness.formats.base import Column, Format, Record
-from movingfrf.roughness.profiles import Profile
+from movingfrf.roughness.profile import Profile
 
 # All formats; text in columns last, since any text might be that.
 FORMATS = {

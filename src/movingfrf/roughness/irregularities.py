@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import FloatArray, checking, require_memory, shown
-from movingfrf.roughness.profiles import Profile
-from movingfrf.smooth import smooth_step
+from movingfrf._basics.checks import FloatArray, checking, require_memory, shown
+from movingfrf._basics.smooth import smooth_step
+from movingfrf.roughness.profile import Profile
 
 # Bytes per sample that making a shape takes at its peak.
 BYTES_PER_SAMPLE = 64

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from movingfrf._checks import FloatArray, ParameterError, checking, require_memory, shown
-from movingfrf.roughness.profiles import Profile
-from movingfrf.smooth import smooth_step
+from movingfrf._basics.checks import FloatArray, ParameterError, checking, require_memory, shown
+from movingfrf._basics.smooth import smooth_step
+from movingfrf.roughness.profile import Profile
 
 # Bytes per station and path that a new profile takes at its peak.
 BYTES_PER_STATION = 64

@@ -9,10 +9,10 @@ import numpy as np
 import scipy.fft
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import Checks, ComplexArray, FloatArray, checking, require_memory, shown
-from movingfrf.roughness.coherence import Coherence, presumed
-from movingfrf.roughness.profiles import Profile
-from movingfrf.roughness.spectra import Spectrum
+from movingfrf._basics.checks import Checks, ComplexArray, FloatArray, checking, require_memory, shown
+from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.spectra.coherence import Coherence, presumed
+from movingfrf.roughness.spectra.iso import Spectrum
 
 # Bytes per sample and path that a realisation takes at its peak.
 BYTES_PER_SAMPLE = 64
@@ -82,7 +82,7 @@ def realise(
 
     Examples
     --------
-    >>> from movingfrf.roughness.spectra import IsoRoad
+    >>> from movingfrf.roughness.spectra.iso import IsoRoad
     >>> road = realise(IsoRoad.of_class("A"), length=100.0, seed=1)
     >>> road.stations[-1].item()
     100.0
@@ -157,7 +157,7 @@ def realise_laplace(
 
     Examples
     --------
-    >>> from movingfrf.roughness.spectra import IsoRoad
+    >>> from movingfrf.roughness.spectra.iso import IsoRoad
     >>> road = realise_laplace(IsoRoad.of_class("C"), kurtosis=9.0, segment=100.0, length=1000.0, seed=1)
     >>> road.stations[-1].item()
     1000.0

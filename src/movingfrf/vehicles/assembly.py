@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from movingfrf._checks import Checks, FloatArray, checking
-from movingfrf.vehicles.base import Vehicle
+from movingfrf._basics.checks import Checks, FloatArray, checking
 from movingfrf.vehicles.contact import Contact
+from movingfrf.vehicles.vehicle import Vehicle
 
 # Bodies whose hinges leave less of a motion than this are held by a hinge that holds them already.
 INDEPENDENT = 1e-9

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from movingfrf._checks import checking, nearest, shown
-from movingfrf.vehicles.base import Vehicle
+from movingfrf._basics.checks import checking, nearest, shown
+from movingfrf.vehicles.cars import full_car, half_car, quarter_car
 from movingfrf.vehicles.rail import carriage
-from movingfrf.vehicles.road import full_car, half_car, quarter_car
-from movingfrf.vehicles.truck import Axle, Unit, truck
+from movingfrf.vehicles.trucks import Axle, Unit, truck
+from movingfrf.vehicles.vehicle import Vehicle
 
 
 class Entry(NamedTuple):

@@ -10,8 +10,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike
 
-from movingfrf._checks import Checks, FloatArray, checking, require_memory
-from movingfrf.vehicles.base import Vehicle
+from movingfrf._basics.checks import Checks, FloatArray, checking, require_memory
+from movingfrf.vehicles.vehicle import Vehicle
 
 
 def convoy(
@@ -43,7 +43,7 @@ def convoy(
 
     Examples
     --------
-    >>> from movingfrf.vehicles.road import quarter_car
+    >>> from movingfrf.vehicles.cars import quarter_car
     >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
     ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
     >>> convoy([car, car], gaps=30.0).positions.tolist()
@@ -169,7 +169,7 @@ def seated(
 
     Examples
     --------
-    >>> from movingfrf.vehicles.road import quarter_car
+    >>> from movingfrf.vehicles.cars import quarter_car
     >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
     ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
     >>> driven = seated(car, mount={"body": 1.0}, driver_mass=60.0, cushion_stiffness=3e4, cushion_damping=800.0)
@@ -257,7 +257,7 @@ def on_paths(vehicle: Vehicle, paths: Sequence[int]) -> Vehicle:
 
     Examples
     --------
-    >>> from movingfrf.vehicles.road import quarter_car
+    >>> from movingfrf.vehicles.cars import quarter_car
     >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
     ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
     >>> on_paths(car, [1]).paths

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from movingfrf._checks import NumberArray, checking
+from movingfrf._basics.checks import NumberArray, checking
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

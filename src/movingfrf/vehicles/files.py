@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from movingfrf import matlab_file
-from movingfrf._checks import Checks, ParameterError, checking
-from movingfrf.vehicles.base import Vehicle
+from movingfrf._basics import matlab_file
+from movingfrf._basics.checks import Checks, ParameterError, checking
 from movingfrf.vehicles.contact import Contact
+from movingfrf.vehicles.vehicle import Vehicle
 
 # Matrices and lists that a file must hold, and what may stand beside them.
 REQUIRED = ("mass", "damping", "stiffness", "contact_map", "position", "contact_stiffness")

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import ComplexArray, FloatArray
-from movingfrf.vehicles.base import Vehicle
+from movingfrf._basics.checks import ComplexArray, FloatArray
 from movingfrf.vehicles.dynamics import state_matrix
+from movingfrf.vehicles.vehicle import Vehicle
 
 # A description names the degrees of freedom that have at least this share in a mode.
 LEAST = 0.03
@@ -52,7 +52,7 @@ def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
 
     Examples
     --------
-    >>> from movingfrf.vehicles.road import quarter_car
+    >>> from movingfrf.vehicles.cars import quarter_car
     >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
     ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
     >>> [mode.description for mode in vehicle_modes(car)]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from movingfrf._checks import Checks, checking
+from movingfrf._basics.checks import Checks, checking
 from movingfrf.vehicles.assembly import Body, Suspension, assemble
-from movingfrf.vehicles.base import Vehicle
 from movingfrf.vehicles.contact import Contact
+from movingfrf.vehicles.vehicle import Vehicle
 
 
 def hertzian_stiffness(load: float, *, wheel_radius: float, worn: bool = True) -> float:

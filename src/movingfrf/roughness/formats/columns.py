@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import FloatArray
+from movingfrf._basics.checks import FloatArray
 from movingfrf.roughness.formats.base import (
     Column,
     Format,
@@ -22,7 +22,7 @@ from movingfrf.roughness.formats.base import (
     scaled,
     unit_in,
 )
-from movingfrf.roughness.profiles import Profile
+from movingfrf.roughness.profile import Profile
 
 # What may stand between two numbers, tried in this order; None is any white space.
 SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", None: "spaces"}

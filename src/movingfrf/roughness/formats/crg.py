@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from movingfrf._checks import option
+from movingfrf._basics.checks import option
 from movingfrf.roughness.formats.base import Column, Format, Record
-from movingfrf.roughness.profiles import Profile
+from movingfrf.roughness.profile import Profile
 
 # How numbers are written: the name here, that of the standard, and the digits it keeps.
 ENCODINGS = {"double": "KDBI", "float": "KRBI", "long text": "LDFI", "short text": "LRFI"}

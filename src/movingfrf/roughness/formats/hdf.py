@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._checks import FloatArray
-from movingfrf.matlab_file import UNPACKED, UNPACKED_LEAST
+from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.matlab_file import UNPACKED, UNPACKED_LEAST
 from movingfrf.roughness.formats.arrays import Array
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from movingfrf import matlab_file
+from movingfrf._basics import matlab_file
 from movingfrf.roughness.formats import arrays, hdf
 from movingfrf.roughness.formats.base import Column, Format, Record, contents
-from movingfrf.roughness.profiles import Profile
+from movingfrf.roughness.profile import Profile
 
 
 def read(path: Path, columns: Sequence[Column] | None) -> Record:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from movingfrf.roughness.formats import arrays, hdf
 from movingfrf.roughness.formats.base import Column, Format, Record
-from movingfrf.roughness.profiles import Profile
+from movingfrf.roughness.profile import Profile
 
 # Between the sentences of an attribute: netCDF turns a list of one into text.
 BETWEEN = "\n"

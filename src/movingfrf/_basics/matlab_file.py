@@ -1,0 +1,184 @@
+"""MATLAB files of version 5 (to 7.2), read number by number: a damaged one ends in an error, whatever it claims."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._basics.checks import FloatArray
+
+# What a file may unpack to: so many times its own size, or this many bytes if that is more. A damaged count or a
+# packed bomb claims more.
+UNPACKED, UNPACKED_LEAST = 10, 2**27
+
+# The level 5 format: a header of text that ends in version and byte order, then elements of type, size and data.
+HEADER = 128
+MATRIX, COMPRESSED = 14, 15
+NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
+# Classes of arrays that hold numbers: double, single, and whole numbers of all sizes.
+NUMERIC = range(6, 16)
+COMPLEX = 0x0800
+# Cells and characters.
+CELL, TEXT = 1, 4
+ORDERS = {"<": "le", ">": "be"}
+
+# Enough of an array to tell its name and size.
+BEGINNING = 1024
+
+
+class Element(NamedTuple):
+    """One element: its type, its data as far as they are there, and how many bytes there should be."""
+
+    kind: int
+    data: bytes
+    size: int
+
+
+class Stored(NamedTuple):
+    """An array that is not read before it is needed."""
+
+    shape: tuple[int, ...]
+    load: Callable[[], FloatArray]
+
+
+class Contents(NamedTuple):
+    """What a file holds, by name; texts are read when asked for, too."""
+
+    numbers: dict[str, Stored]
+    texts: dict[str, Callable[[], list[str]]]
+
+
+def contents(data: bytes) -> Contents:
+    """Take apart a MATLAB file of version 5 (up to 7.2).
+
+    Parameters
+    ----------
+    data : bytes
+        The file.
+
+    Returns
+    -------
+    Contents
+        Arrays of real numbers, read when asked for, and texts: arrays of characters, and cells that hold such.
+
+    Raises
+    ------
+    ValueError
+        If it is no such file, or damaged.
+    """
+    order = {b"IM": "<", b"MI": ">"}.get(data[126:128])
+    if order is None:
+        raise ValueError("is no MATLAB file of version 5 or 7.3; save it anew with -v7 or -v7.3")
+    numbers: dict[str, Stored] = {}
+    texts: dict[str, Callable[[], list[str]]] = {}
+    for element in _elements(memoryview(data)[HEADER:], order):
+        read_all = partial(_unpacked, element, len(data))
+        beginning = _unpacked(element, len(data), BEGINNING) if element.kind == COMPRESSED else element.data
+        kind = element.kind
+        if kind == COMPRESSED:
+            kind, beginning, _ = next(_elements(memoryview(beginning), order, partly=True), Element(0, b"", 0))
+        if kind != MATRIX:
+            continue
+        parts = list(_elements(memoryview(beginning), order, partly=True, most=3))
+        if len(parts) == 3 and len(parts[0].data) >= 4:
+            (flags,) = struct.unpack(f"{order}I", parts[0].data[:4])
+            name = bytes(parts[2].data).decode("latin-1")
+            packed = element.kind == COMPRESSED
+            if flags & 0xFF in NUMERIC and not flags & COMPLEX and len(parts[1].data) % 4 == 0:
+                shape = tuple(np.frombuffer(parts[1].data, f"{order}i4").tolist())
+                numbers[name] = Stored(shape, partial(_numbers, read_all, packed, shape, order, name))
+            elif flags & 0xFF in (CELL, TEXT):
+                texts[name] = partial(_texts, read_all, packed, order, flags & 0xFF)
+    return Contents(numbers, texts)
+
+
+def _texts(read_all: Callable[[], bytes], packed: bool, order: str, kind: int) -> list[str]:
+    """One text, or those in the cells of an array."""
+    data = memoryview(read_all())
+    if packed:
+        data = memoryview(next(_elements(data, order)).data)
+    parts = list(_elements(data, order))[3:]
+    if kind == TEXT:
+        return [_decoded(part, order) for part in parts[:1]]
+    cells = [list(_elements(memoryview(part.data), order)) for part in parts if part.kind == MATRIX]
+    return [_decoded(cell[3], order) for cell in cells if len(cell) > 3]
+
+
+def _decoded(part: Element, order: str) -> str:
+    encoding = {2: "latin-1", 16: "utf-8", 4: f"utf-16-{ORDERS[order]}", 17: f"utf-16-{ORDERS[order]}"}.get(
+        part.kind
+    )
+    if encoding is None:
+        raise ValueError(f"is damaged: a text is stored as type {part.kind}")
+    return bytes(part.data).decode(encoding, "replace").strip()
+
+
+def _elements(data: memoryview, order: str, *, partly: bool = False, most: int = 2**31) -> Iterator[Element]:
+    """Elements one after the other; `partly` lets the last one be cut short."""
+    at = count = 0
+    while at + 8 <= len(data) and count < most:
+        kind, size = struct.unpack_from(f"{order}II", data, at)
+        if kind >> 16:  # a small one: size and type in four bytes, the data in the next four
+            kind, size, start, end = kind & 0xFFFF, kind >> 16, at + 4, at + 8
+            if size > 4:
+                raise ValueError(f"is damaged: an element of 4 bytes claims {size}")
+        else:
+            start = at + 8
+            # Packed elements follow each other without a gap, all others at multiples of 8 bytes.
+            end = start + (size if kind == COMPRESSED else -(-size // 8) * 8)
+        if start + size > len(data) and not partly:
+            raise ValueError(f"is damaged: an element claims {size} bytes, but {len(data) - start} are left")
+        yield Element(kind, data[start : start + size], size)  # type: ignore[arg-type]
+        at, count = end, count + 1
+
+
+def _unpacked(element: Element, file_size: int, most: int = 0) -> bytes:
+    """Unpack an element, all of it or its beginning, but no more than a file of this size can hold in earnest."""
+    if element.kind != COMPRESSED:
+        return element.data
+    limit = max(UNPACKED * file_size, UNPACKED_LEAST)
+    packed = zlib.decompressobj()
+    try:
+        data = packed.decompress(element.data, most or limit)
+    except zlib.error as error:
+        raise ValueError(f"is damaged: {error}") from None
+    if not most and packed.unconsumed_tail:
+        raise ValueError(f"unpacks to more than {UNPACKED} times its size: unpack it elsewhere first")
+    return data
+
+
+def _numbers(
+    read_all: Callable[[], bytes], packed: bool, shape: tuple[int, ...], order: str, name: str
+) -> FloatArray:
+    data = memoryview(read_all())
+    if packed:
+        data = memoryview(next(_elements(data, order)).data)
+    parts = list(_elements(data, order, most=4))
+    kind = parts[3].kind if len(parts) == 4 else 0
+    if kind not in NUMBERS:
+        raise ValueError(f"is damaged: the array {name!r} has no numbers")
+    stored = np.dtype(f"{order}{NUMBERS[kind]}")
+    if len(shape) < 2 or min(shape) < 0 or int(np.prod(shape, dtype=object)) * stored.itemsize != parts[3].size:
+        raise ValueError(f"is damaged: the array {name!r} of shape {shape} has {parts[3].size} bytes")
+    return np.frombuffer(parts[3].data, stored).astype(float).reshape(shape, order="F")
+
+
+def recognised(head: bytes) -> bool:
+    """Tell from the first bytes of a file whether it is one of version 5.
+
+    Parameters
+    ----------
+    head : bytes
+        At least 128 bytes.
+
+    Returns
+    -------
+    bool
+        Whether it says so.
+    """
+    return head.startswith(b"MATLAB ") and head[126:128] in (b"IM", b"MI")

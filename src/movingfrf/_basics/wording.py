@@ -1,0 +1,101 @@
+"""Numbers and settings of a result in words, for reading."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# Numbers of paths that are written out.
+MOST_PATHS = 6
+
+# A rate [1/s] or a share below this stands for never.
+NEVER = 1e-12
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Write a number for reading: significant digits, powers of ten only where they are shorter.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    digits : int
+        Significant digits.
+
+    Returns
+    -------
+    str
+        The number, with a true minus sign.
+
+    Examples
+    --------
+    >>> number(98399.5), number(-0.0810412), number(1.2e-7, 2), number(0.0), number(float("inf"))
+    ('98400', '−0.08104', '1.2 × 10⁻⁷', '0', '∞')
+    """
+    if value == 0:
+        return "0"
+    if not np.isfinite(value):
+        return str(value).replace("inf", "∞").replace("-", "−")
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    power = int(exponent)
+    if -4 < power < 6:
+        rounded = float(f"{mantissa}e{power}")
+        return f"{rounded:.{max(digits - 1 - power, 0)}f}".replace("-", "−")
+    return f"{mantissa} × 10{str(power).translate(SUPERSCRIPTS)}".replace("-", "−")
+
+
+def plain(value: float) -> str:
+    """Write a setting as it was typed: without trailing zeros."""
+    return f"{value:.10g}".replace("-", "−")
+
+
+def is_never(value: float, units: str) -> bool:
+    """Tell whether a rate or a share is too small for its digits to mean anything."""
+    return units in ("1/s", "1") and 0 < value < NEVER
+
+
+def count(number: int, singular: str, plural: str = "") -> str:
+    """Write a number of things, in the singular or the plural."""
+    return f"{number} {singular if number == 1 else plural or singular + 's'}"
+
+
+def paths(numbers: Sequence[int]) -> str:
+    """Name some paths by their numbers: path 0, paths 0 and 2, paths 0, 1, 2, 3 and 11 more."""
+    words = [str(number) for number in numbers]
+    if len(words) == 1:
+        return f"path {words[0]}"
+    if len(words) > MOST_PATHS:
+        words = [*words[: MOST_PATHS - 1], f"{len(words) - MOST_PATHS + 1} more"]
+    *first, last = words
+    return f"paths {', '.join(first)} and {last}"
+
+
+def some_of(total: int, most: int, what: str) -> str:
+    """Say in a caption that not everything is drawn."""
+    return f" {most} of {total} {what} are drawn; the tables list all." if total > most else ""
+
+
+def speed(result: xr.Dataset) -> str:
+    """Write the speed in both units."""
+    speed = result.attrs["speed"]
+    # Unbreakable spaces: a number stays with its unit.
+    return f"{plain(speed)}\u00a0m/s ({plain(round(3.6 * speed, 6))}\u00a0km/h)"
+
+
+def duration(result: xr.Dataset) -> float:
+    """Duration of the record [s], free of the rounding of its last time."""
+    return float(f"{result.sizes['time'] * time_step(result):.12g}")
+
+
+def time_step(result: xr.Dataset) -> float:
+    """Step in time [s], without the rounding of a difference."""
+    time = result.time.values
+    return float(f"{time[1] - time[0]:.12g}")

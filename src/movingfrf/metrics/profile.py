@@ -1,0 +1,397 @@
+"""What a measured profile is like: its stations, spectrum, ISO 8608 class, roughness index, and what looks odd."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._basics.checks import ComplexArray, FloatArray, finite
+from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.wording import paths as named
+from movingfrf.metrics.iri import AVERAGE, LONGEST_STEP, RUN_IN, iri
+from movingfrf.reports.plots import FLAT, shown
+from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
+from movingfrf.roughness.preparation import resampled, selected
+from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.spectra.iso import CLASS_CENTRES
+
+# Segments over which the roughness index is taken [m].
+SEGMENTS = (20.0, 100.0)
+
+# How far a station may lie from an even grid, as a share of the step, without need to interpolate: the rounding of
+# a file's stations.
+UNEVEN = 0.02
+
+# Welch's method: half-overlapping pieces, at least so many, and none longer than this [m]. Three lines of its
+# spectrum make the lowest wave, so that the longest wave that ISO 8608 fits, 91 m, is within reach.
+PIECES, LONGEST_PIECE = 8, 400.0
+
+# What looks odd: an elevation this far from the middle of its neighbours [m], and so many times further than usual;
+# and a stretch of this length [m] and so many stations without any change.
+SPIKE, UNUSUAL = 5e-3, 15.0
+LEVEL, LEVEL_STATIONS = 5.0, 20
+
+# Of level stretches the longest so many are named.
+MOST_STRETCHES = 5
+
+# Rougher than roads are: a density at 0.1 cycle/m [m³], where class H begins, and an index [mm/m]. A smooth road
+# whose centimetres are taken for metres lies beyond both.
+NO_ROAD = (2 * CLASS_CENTRES["G"], 200.0)
+
+# Resolutions of instruments and file formats that are looked for [m], and on how many stations.
+RESOLUTIONS = (1e-2, 1e-3, 5e-4, 2.5e-4, 1e-4, 1e-5, 1e-6)
+LOOKED_AT = 20_000
+
+
+class Spectra(NamedTuple):
+    """Spectra of all paths, one-sided, and between the first and the last."""
+
+    spatial_frequency: FloatArray  # (line,) [cycle/m]
+    own: FloatArray  # (line, path) [m³]
+    both: ComplexArray  # (line,) [m³]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PathDescription:
+    """One path of a profile.
+
+    Parameters
+    ----------
+    number : int
+        Number of the path.
+    across : float or None
+        Lateral position [m], left positive, where it is known.
+    lowest, highest : float
+        Elevations between which it lies [m].
+    resolution : float
+        What all elevations are a multiple of [m]; 0 if nothing was found.
+    fit : IsoFit
+        Fitted spectrum: roughness, waviness, class and range, or why there is none.
+    index : float
+        International roughness index of the whole path [mm/m]; nan where it has none.
+    indices : dict of float to ndarray
+        Length of the segments [m] → index of each, from the first station on [mm/m].
+    spatial_frequency, density : ndarray
+        Estimated spectrum [cycle/m] and [m³].
+    """
+
+    number: int
+    across: float | None
+    lowest: float
+    highest: float
+    resolution: float
+    fit: IsoFit
+    index: float
+    indices: dict[float, FloatArray]
+    spatial_frequency: FloatArray
+    density: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ProfileDescription:
+    """A profile, described.
+
+    Parameters
+    ----------
+    profile : Profile
+        The profile itself.
+    shortest_step, longest_step : float
+        Smallest and largest distance between stations [m].
+    used_step : float
+        Step of the stations that spectra and indices were taken from [m].
+    paths : tuple of PathDescription
+        The paths; of equal ones the first, and some of them where there are many.
+    coherence : tuple of ndarray, or None
+        Spatial frequency [cycle/m] and magnitude-squared coherence, dimensionless, between the first and the last
+        path described; None with one path.
+    findings : tuple of str
+        What looks odd.
+    """
+
+    profile: Profile
+    shortest_step: float
+    longest_step: float
+    used_step: float
+    paths: tuple[PathDescription, ...]
+    coherence: tuple[FloatArray, FloatArray] | None
+    findings: tuple[str, ...]
+
+    @property
+    def length(self) -> float:
+        """Distance from the first station to the last [m]."""
+        return float(np.ptp(self.profile.stations))
+
+    @property
+    def scope(self) -> str:
+        """How many of the paths are described, in words; empty if all of them."""
+        described, paths = len(self.paths), self.profile.paths
+        return f"{described} of {paths} paths are described" if described < paths else ""
+
+
+def describe_profile(profile: Profile, *, progress: Progress = silent) -> ProfileDescription:
+    """Describe a profile.
+
+    Parameters
+    ----------
+    profile : Profile
+        The profile. Of equal paths the first is described, and of many paths six. Where stations are uneven,
+        spectra, coherence and the roughness index are taken from the cubic spline at the median step.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    ProfileDescription
+        Extent, spectrum, class and roughness index of each path, coherence, and what looks odd.
+
+    Examples
+    --------
+    >>> from movingfrf.roughness.realisation import realise
+    >>> from movingfrf.roughness.spectra.iso import IsoRoad
+    >>> road = realise(IsoRoad.of_class("B"), length=1000.0, seed=1)
+    >>> describe_profile(road).paths[0].fit.road_class
+    'B'
+    """
+    steps = np.diff(profile.stations)
+    alike = profile.alike
+    findings = [
+        f"{_sentence(named(same))} are equal: path {same[0]} is described for all."
+        for same in alike
+        if len(same) > 1
+    ]
+    numbers = [alike[n][0] for n in shown(len(alike))]
+    described = selected(profile, paths=numbers) if len(numbers) < profile.paths else profile
+    step = described.even_step(UNEVEN)
+    if step is None:
+        progress("even stations", 0.0)
+        step = float(np.median(steps))
+        described = resampled(described, step=step)
+        findings.append(
+            f"Stations are uneven, {steps.min():.4g} to {steps.max():.4g} m apart: spectra and indices are taken "
+            f"from the cubic spline at steps of {step:.4g} m."
+        )
+    indices, reason = _indices(described, step, progress)
+    progress("spectra", 0.0)
+    estimated = _spectra(described.columns, step)
+    if reason:
+        findings.append(reason)
+    paths = []
+    for n, number in enumerate(numbers):
+        progress("paths", n / len(numbers))
+        column = profile.columns[:, number]
+        paths.append(_path(described, n, number, column, indices, estimated))
+        findings += _oddities(profile.stations, column, f" on path {number}" if len(alike) > 1 else "")
+    findings += _doubts(paths)
+    return ProfileDescription(
+        profile=profile,
+        shortest_step=float(steps.min()),
+        longest_step=float(steps.max()),
+        used_step=step,
+        paths=tuple(paths),
+        coherence=_coherence(estimated) if described.paths > 1 else None,
+        findings=tuple(findings),
+    )
+
+
+def as_dict(found: ProfileDescription, understood: str = "") -> dict[str, object]:
+    """Turn a description into what JSON can hold.
+
+    Parameters
+    ----------
+    found : ProfileDescription
+        What `describe_profile` returned.
+    understood : str
+        How the file was understood.
+
+    Returns
+    -------
+    dict
+        With the unit in every name; None where there is no number.
+    """
+    profile = found.profile
+    paths = [
+        {
+            "path": path.number,
+            "across_m": path.across,
+            "lowest_m": path.lowest,
+            "highest_m": path.highest,
+            "resolution_m": path.resolution or None,
+            "roughness_m3": path.fit.roughness,
+            "waviness": path.fit.waviness,
+            "roughness_at_waviness_2_m3": path.fit.roughness_at_two,
+            "fitted_over_cycle_per_m": list(path.fit.band),
+            "iso_8608_class": path.fit.road_class or None,
+            "why_no_class": path.fit.reason or None,
+            "iri_mm_per_m": path.index,
+            **{f"iri_per_{span:g}_m_mm_per_m": each.tolist() for span, each in path.indices.items()},
+        }
+        for path in found.paths
+    ]
+    coherence = found.coherence or (np.empty(0), np.empty(0))
+    content = {
+        "source": profile.source,
+        "understood": understood,
+        "steps": list(profile.steps),
+        "stations": int(profile.stations.size),
+        "first_m": float(profile.stations[0]),
+        "last_m": float(profile.stations[-1]),
+        "length_m": found.length,
+        "shortest_step_m": found.shortest_step,
+        "longest_step_m": found.longest_step,
+        "paths": paths,
+        "coherence": {
+            "spatial_frequency_cycle_per_m": coherence[0].tolist(),
+            "magnitude_squared": coherence[1].tolist(),
+        },
+        "findings": list(found.findings),
+    }
+    cleaned: dict[str, object] = finite(content)
+    return cleaned
+
+
+def _path(
+    even: Profile,
+    column: int,
+    number: int,
+    elevation: FloatArray,
+    indices: dict[float, FloatArray],
+    estimated: Spectra,
+) -> PathDescription:
+    density = estimated.own[:, column]
+    spectrum = (estimated.spatial_frequency, density) if density.any() else (np.empty(0), np.empty(0))
+    across = even.across[column] if even.across is not None else None
+    return PathDescription(
+        number=number,
+        across=across,
+        lowest=float(elevation.min()),
+        highest=float(elevation.max()),
+        resolution=_resolution(elevation[:LOOKED_AT]),
+        fit=fit_iso(*spectrum),
+        index=float(indices[0.0][0, column]) if 0.0 in indices else float("nan"),
+        indices={span: found[:, column] for span, found in indices.items() if span},
+        spatial_frequency=spectrum[0],
+        density=spectrum[1],
+    )
+
+
+def _spectra(columns: FloatArray, step: float) -> Spectra:
+    """Estimate spectra by Welch's method, as `welch` does, of all paths in one pass over a long profile."""
+    from scipy.fft import rfft
+
+    stations, paths = columns.shape
+    pieces = max(PIECES, int(2 * step * stations / LONGEST_PIECE))
+    length = min(max(2 * stations // (pieces + 1), 8), stations)
+    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(length) / length)
+    ramp = np.arange(length) - (length - 1) / 2
+    hop = length - length // 2
+    starts = np.arange(0, stations - length + 1, hop)
+    own, both = np.zeros((length // 2 + 1, paths)), np.zeros(length // 2 + 1, complex)
+    for start in starts:
+        piece = columns[start : start + length] - columns[start : start + length].mean(axis=0)
+        piece -= np.outer(ramp, ramp @ piece / (ramp @ ramp))
+        lines = rfft(piece * window[:, None], axis=0)
+        own += lines.real**2 + lines.imag**2
+        both += lines[:, 0].conj() * lines[:, -1]
+    scale = 2 * step / (window @ window) / len(starts)
+    if length % 2 == 0:  # the last line has no partner at a negative frequency
+        own[-1], both[-1] = own[-1] / 2, both[-1] / 2
+    n = np.arange(length // 2 + 1) / (length * step)
+    # Trend and window have taken from the lowest lines.
+    rounding = np.ptp(columns, axis=0) < FLAT
+    return Spectra(n[3:], scale * own[3:] * ~rounding, scale * both[3:] * (not rounding[[0, -1]].any()))
+
+
+def _indices(even: Profile, step: float, progress: Progress) -> tuple[dict[float, FloatArray], str]:
+    """Roughness index of the whole (at 0) and of segments, and why there is none."""
+    length = float(np.ptp(even.stations))
+    if step > LONGEST_STEP:
+        return (
+            {},
+            f"The roughness index needs a step of at most {LONGEST_STEP:.2g} m, and there is one of {step:.4g} m.",
+        )
+    if length < RUN_IN:
+        return {}, f"The roughness index needs {RUN_IN:g} m of road, and there are {length:.4g} m."
+    wanted = [0.0, *(span for span in SEGMENTS if step * 4 + AVERAGE < span <= length)]
+    found = {}
+    for n, span in enumerate(wanted):
+        progress("roughness index", n / len(wanted))
+        found[span] = iri(even, segment=span or None)
+    return found, ""
+
+
+def _coherence(estimated: Spectra) -> tuple[FloatArray, FloatArray] | None:
+    """Magnitude-squared coherence of the first and the last path, averaged over the bands of ISO 8608."""
+    n = estimated.spatial_frequency
+    band = np.digitize(n, SMOOTHING_EDGES)
+    sums = [
+        np.bincount(band, values, minlength=SMOOTHING_EDGES.size + 1)[1:-1]
+        for values in (np.ones(n.size), n, *estimated.own[:, [0, -1]].T, estimated.both.real, estimated.both.imag)
+    ]
+    lines, frequency, first, last, real, imaginary = (total[sums[2] * sums[3] > 0] for total in sums)
+    if not lines.size:
+        return None
+    return frequency / lines, (real**2 + imaginary**2) / (first * last)
+
+
+def _resolution(elevation: FloatArray) -> float:
+    """Find what all elevations are a multiple of [m]; 0 if nothing that is usual."""
+    for resolution in RESOLUTIONS:
+        counts = (elevation - elevation[0]) / resolution
+        # Rounding of the numbers themselves, which may be hundreds of metres.
+        slack = 1e-3 + 4 * np.spacing(np.abs(elevation).max()) / resolution
+        if np.round(counts).any() and np.abs(counts - np.round(counts)).max() < slack < 0.1:
+            return resolution
+    return 0.0
+
+
+def _doubts(paths: list[PathDescription]) -> list[str]:
+    """Say why there is no class or it means little, once for all paths of which it is true, and what is no road."""
+    said: dict[str, list[int]] = {}
+    for path in paths:
+        words = f"no class: {path.fit.reason}" if path.fit.reason else path.fit.doubt
+        if words:
+            said.setdefault(f"{words}.", []).append(path.number)
+        if path.fit.roughness_at_two > NO_ROAD[0] or path.index > NO_ROAD[1]:
+            rough = (f"IRI {path.index:.4g} mm/m",) if np.isfinite(path.index) else ()
+            dense = () if path.fit.reason else (f"{path.fit.roughness_at_two:.3g} m³ at 0.1 cycle/m",)
+            words = f"rougher than roads are, {' and '.join(rough + dense)}: are the elevations in metres?"
+            said.setdefault(words, []).append(path.number)
+    return [
+        _sentence(words if len(numbers) == len(paths) else f"{named(numbers)}: {words}")
+        for words, numbers in said.items()
+    ]
+
+
+def _sentence(words: str) -> str:
+    return words[0].upper() + words[1:]
+
+
+def _oddities(stations: FloatArray, elevation: FloatArray, of: str) -> list[str]:
+    """Say what looks like a drop-out, a spike or a fill."""
+    found = []
+    bend = np.abs(elevation[1:-1] - (elevation[:-2] + elevation[2:]) / 2)
+    # A spike bends its neighbours half as much; it is counted once.
+    around = np.pad(bend, 1)
+    peak = (bend >= around[:-2]) & (bend > around[2:])
+    high = np.flatnonzero(peak & (bend > max(SPIKE, UNUSUAL * float(np.median(bend)))))
+    if high.size:
+        worst = int(high[bend[high].argmax()])
+        by = f"by {1e3 * bend[worst]:.3g} mm at {stations[worst + 1]:g} m: a spike, or a sharp edge of the road."
+        one = f"1 elevation{of} stands out from both of its neighbours, "
+        several = f"{high.size} elevations{of} stand out from both of their neighbours, the most "
+        found.append((one if high.size == 1 else several) + by)
+    changes = np.flatnonzero(np.diff(elevation) != 0)
+    bounds = np.concatenate([[0], changes + 1, [len(elevation)]])
+    lengths = stations[bounds[1:] - 1] - stations[bounds[:-1]]
+    level = np.flatnonzero((np.diff(bounds) > LEVEL_STATIONS) & (lengths >= LEVEL))
+    if level.size:
+        longest = level[np.sort(np.argsort(-lengths[level], kind="stable")[:MOST_STRETCHES])]
+        places = [f"over {lengths[n]:.4g} m from {stations[bounds[n]]:g} m on" for n in longest]
+        more = f", and in {level.size - len(places)} shorter stretches" if level.size > len(places) else ""
+        found.append(
+            f"The elevation{of} does not change at all {', '.join(places)}{more}: a drop-out that was filled, or a "
+            "level that is no measurement."
+        )
+    return found

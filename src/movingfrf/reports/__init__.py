@@ -1,0 +1,1 @@
+"""From results to pages: curves, figures, tables and the one file they are put into."""

@@ -1,0 +1,1 @@
+"""Where guideway and vehicle meet, in the frequency domain."""

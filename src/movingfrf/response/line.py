@@ -1,0 +1,234 @@
+"""From time to complex frequency and back: sign, scale, window, padding and truncation are decided here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+
+from movingfrf._basics.checks import ComplexArray, FloatArray, IntArray, checking
+from movingfrf._basics.smooth import smooth_step
+
+# What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the
+# padded record grow by its inverse, which is why it is not smaller.
+WRAP_AROUND = 3e-5
+
+# Share of the padding within which the level of a record fades out after its end; the rest of the padding is for
+# the response to die away. Slope and curvature fade earlier: after so many times the ratio of the record's typical
+# slope to its typical curvature, at most the second share.
+SETTLE, TIMES_ITS_SCALE, FADE = 0.25, 12.0, 0.05
+
+# Share of the truncation over which the guideway stiffens beyond it. What a sharp cut discards would ring on and
+# on, and the window raises what comes late.
+STIFFENING = 0.05
+
+# Samples before the end of a record that tell how fast it varies.
+LATELY = 4096
+
+# Channels transformed at a time: as many as a processor's vector holds numbers.
+TOGETHER = 4
+
+# One-sided differences of fourth and third order for slope and curvature at the last sample (latest first).
+SLOPE = np.array([25 / 12, -4.0, 3.0, -4 / 3, 1 / 4])
+CURVATURE = np.array([35 / 12, -26 / 3, 19 / 2, -14 / 3, 11 / 12])
+
+
+class Histories(NamedTuple):
+    """Records, and what of each wraps around from the end of the padding to the start."""
+
+    values: FloatArray  # (time, channel)
+    wrapped: FloatArray  # (channel,)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpectralGrid:
+    """A record in time and the complex frequencies that stand for it.
+
+    X(ω) = ∫ x(t) e^{−iωt} dt, evaluated along ω − iη (exponential window, Kausel and Roësset 1992): the
+    periodic repetition that a discrete transform implies is damped to `WRAP_AROUND` after one period.
+
+    Parameters
+    ----------
+    samples : int
+        Samples of the record.
+    time_step : float
+        Step of the record [s].
+    truncation : float, optional
+        Frequency beyond which the guideway stiffens until, 5 % higher, it is rigid [Hz]; None keeps every
+        frequency.
+    settling : float
+        Time that the padding must leave, at least, for the response to die away [s].
+
+    Examples
+    --------
+    >>> grid = SpectralGrid(samples=1000, time_step=1e-3)
+    >>> history = np.sin(2 * np.pi * 5 * grid.time)[:, None] ** 3
+    >>> bool(np.allclose(grid.to_histories(grid.to_spectra(history)).values, history, atol=1e-12))
+    True
+    """
+
+    samples: int
+    time_step: float
+    truncation: float | None = None
+    settling: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        with checking() as check:
+            check.whole("samples", self.samples, least=1)
+            check.positive("time_step", self.time_step, "s")
+            if self.truncation is not None:
+                check.not_negative("truncation", self.truncation, "Hz")
+            check.not_negative("settling", self.settling, "s")
+
+    @property
+    def padded(self) -> int:
+        """Length of the transform: the record, time to settle, and what makes the length factorise."""
+        padding = max(self.samples // 8, int(self.settling / (1 - SETTLE) / self.time_step), 16)
+        return int(scipy.fft.next_fast_len(self.samples + padding, real=True))
+
+    @property
+    def decay(self) -> float:
+        """Distance η of the line of evaluation from the real axis [rad/s]."""
+        return float(-np.log(WRAP_AROUND)) / (self.padded * self.time_step)
+
+    @property
+    def size(self) -> int:
+        """Number of complex frequencies."""
+        return self.padded // 2 + 1
+
+    @property
+    def untouched(self) -> int:
+        """Number of frequencies, from zero to the truncation, at which the guideway is what it is."""
+        return self._below(1.0)
+
+    @property
+    def kept(self) -> int:
+        """Number of frequencies, from zero, at which the guideway is solved for: those at which it is not rigid."""
+        return self._below(1.0 + STIFFENING)
+
+    def compliance(self, numbers: slice) -> FloatArray:
+        """Share of its compliance that the guideway has at some frequencies: 1 up to the truncation, then less."""
+        at = np.arange(*numbers.indices(self.size))
+        if self.truncation is None or not self.truncation:
+            return np.ones(at.size)
+        frequency = at / (self.padded * self.time_step)
+        return smooth_step((1.0 + STIFFENING - frequency / self.truncation) / STIFFENING)
+
+    def _below(self, share: float) -> int:
+        """Count frequencies from zero to so many times the truncation."""
+        if self.truncation is None:
+            return self.size
+        # The half makes the count independent of the rounding of a multiple of the frequency step.
+        return min(self.size, int(share * self.truncation * self.padded * self.time_step + 0.5) + 1)
+
+    @property
+    def time(self) -> FloatArray:
+        """Times of the record [s], from zero."""
+        return np.arange(self.samples) * self.time_step
+
+    def omega(self, numbers: IntArray | slice = slice(None)) -> ComplexArray:
+        """Complex angular frequencies ω − iη [rad/s]: those of the given numbers, or all."""
+        step = 2 * np.pi / (self.padded * self.time_step)
+        if isinstance(numbers, slice):
+            numbers = np.arange(*numbers.indices(self.size))
+        return step * numbers - 1j * self.decay
+
+    def to_spectra(self, histories: FloatArray) -> ComplexArray:
+        """Transform records that are zero before their first sample.
+
+        Past its end each record is continued: smoothly in value, slope and curvature, down to zero within the
+        padding. (A record that simply stopped would jump, and the jump would ring backwards.)
+
+        Parameters
+        ----------
+        histories : ndarray, shape (time, channel)
+            Records; not modified.
+
+        Returns
+        -------
+        ndarray, shape (frequency, channel)
+            Spectra, in the unit of the record times second.
+        """
+        spectra = np.empty((histories.shape[1], self.size), complex)
+        window = self.time_step * np.exp(-self.decay * self.time_step * np.arange(self.padded))
+        for first in range(0, len(spectra), TOGETHER):
+            block = histories.T[first : first + TOGETHER]
+            padded = np.empty((len(block), self.padded))
+            padded[:, : self.samples] = block
+            for row, history in zip(padded, block, strict=True):
+                row[self.samples :] = self._continuation(history)
+            # A jump at t = 0 is centred there: half of its first sample lies before it.
+            padded[:, 0] *= 0.5
+            padded *= window
+            np.fft.rfft(padded, out=spectra[first : first + TOGETHER])
+        return spectra.T
+
+    def scratch(self) -> NDArray[np.float64]:
+        """Memory for `to_histories` to work in: fresh pages cost more than a transform."""
+        return np.empty((TOGETHER, self.padded))
+
+    def to_histories(
+        self, spectra: ComplexArray, *, derivative: int = 0, scratch: NDArray[np.float64] | None = None
+    ) -> Histories:
+        """Transform spectra, or their derivatives in time, back to records; the inverse of `to_spectra`.
+
+        Parameters
+        ----------
+        spectra : ndarray, shape (frequency, channel)
+            Spectra along ω − iη; frequencies beyond the last row are zero.
+        derivative : int
+            Order of the derivative with respect to time.
+        scratch : ndarray, optional
+            What `scratch()` returned, to be used again for several calls.
+
+        Returns
+        -------
+        Histories
+            Records of shape (time, channel), and the largest value, as it wraps around, within a hundredth of the
+            period near its end (not at the very end, where the ripple that precedes a jump at t = 0 lies).
+        """
+        histories = np.empty((spectra.shape[1], self.samples))
+        wrapped = np.empty(spectra.shape[1])
+        last = self.padded // 100 + 1
+        memory = self.scratch() if scratch is None else scratch
+        factor = (1j * self.omega(slice(len(spectra)))) ** derivative if derivative else None
+        growth = np.exp(self.decay * self.time_step * np.arange(self.samples)) / self.time_step
+        for first in range(0, len(histories), TOGETHER):
+            some = slice(first, first + TOGETHER)
+            block = spectra.T[some] if factor is None else spectra.T[some] * factor
+            periodic = np.fft.irfft(block, self.padded, out=memory[: len(block)])
+            np.multiply(periodic[:, : self.samples], growth, out=histories[some])
+            wrapped[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / self.time_step
+        return Histories(histories.T, wrapped)
+
+    def _continuation(self, history: FloatArray) -> FloatArray:
+        """Continue the record, so that neither value, slope nor curvature jumps."""
+        length = self.padded - self.samples
+        after = np.zeros(length)
+        level = history[-1]
+        settle = max(int(SETTLE * length), 1)
+        after[:settle] = level * _fading(settle)
+        fade = min(self._memory(history), length)
+        if self.samples >= len(SLOPE) and fade > 1:
+            latest = history[: -len(SLOPE) - 1 : -1]
+            slope, curvature = SLOPE @ latest, CURVATURE @ latest
+            ahead = np.arange(1.0, fade + 1)
+            after[:fade] += (slope * ahead + 0.5 * curvature * ahead**2) * _fading(fade)
+        return after
+
+    def _memory(self, history: FloatArray) -> int:
+        """Count the samples over which slope and curvature fade: enough not to add frequencies."""
+        steps = np.diff(history[-LATELY:])
+        bends = np.diff(steps)
+        bend, step = float(bends @ bends), float(steps @ steps)
+        longest = (self.padded - self.samples) * FADE
+        return int(min(TIMES_ITS_SCALE * np.sqrt(step / bend), longest)) if bend else int(longest)
+
+
+def _fading(count: int) -> FloatArray:
+    """From just below 1 to 0 over `count` samples."""
+    return 1.0 - smooth_step(np.arange(1, count + 1) / count)

@@ -1,0 +1,461 @@
+"""The stationary response to a random road, without realising one: spectral densities and what follows from them.
+
+The elevations under the contacts i and j have the cross-spectral density
+
+    S_ij(f) = G_d(n)/v · γ_ij(n) · e^{iω(x_i − x_j)/v},   n = f/v,
+
+since a contact ahead meets the road earlier; γ_ij is the coherence of the paths that they follow. With a factor
+γ = L Lᵀ over the paths, a response with the transfer functions H has the density Σ_c |H e^{iωx/v} L_c|² G_d/v: one
+solution per path, and no matrix of cross-spectra.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from numbers import Real
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import ndtr
+
+import movingfrf.results.findings as find
+from movingfrf._basics.checks import Checks, ComplexArray, FloatArray, SolveError, checking, require_memory, shown
+from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.version import VERSION
+from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.metrics.loads import load_coefficient
+from movingfrf.response.quadrature import Lines, Unresolved, resolved
+from movingfrf.response.solve import System, joined, steady_state
+from movingfrf.response.stability import along_the_axis, require_stable
+from movingfrf.response.transfer import BYTES_PER_VALUE, coordinates, responses
+from movingfrf.results.findings import Finding
+from movingfrf.results.labels import RANDOM, RANDOM_QUANTITIES, labelled
+from movingfrf.roughness.spectra.coherence import Coherence
+from movingfrf.roughness.spectra.iso import Spectrum
+from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# A variance that is this small a share of a comparable one is rounding.
+ROUNDING = 1e-20
+
+# Negative eigenvalues of a matrix of coherences up to this size are rounding.
+SEMIDEFINITE = 1e-9
+
+# Damping ratio below which a resonance is too sharp to be resolved.
+NEXT_TO_NONE = 1e-9
+
+# Powers of the frequency whose integrals the statistics need.
+POWERS = (0, 2, 4)
+
+# Levels over which the peak factor is integrated.
+PEAK_POINTS = 400
+
+# From which on it is worth a word: expected lift-offs within the exposure, share of the time lifted off, and share
+# of a contact force's variance in the highest tenth of the frequencies.
+LIFT_OFFS, LIFTED_OFF, AT_THE_END = 1.0, 1e-3, 0.01
+
+# Weighting of ISO 2631-1 by the unit of a degree of freedom: vertical vibration of a seat or floor, and rotation.
+WEIGHTING_OF = {"m": "Wk", "rad": "We"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Road:
+    """A random road under a vehicle."""
+
+    vehicle: Vehicle
+    spectrum: Spectrum
+    coherence: Coherence | float
+    speed: float
+
+    def amplitudes(self, frequency: FloatArray) -> ComplexArray:
+        """Elevation under the contacts, one case per independent part of the road [m/√Hz].
+
+        Shape (frequency, contact, case); the cases' products with their own conjugates add up to S_ij.
+        """
+        n = frequency / self.speed
+        delay = np.exp(2j * np.pi * np.outer(n, self.vehicle.positions))
+        size = np.sqrt(self.spectrum.density(n) / self.speed)[:, None] * self.vehicle.enveloping(2 * np.pi * n)
+        _, path = np.unique(self.vehicle.paths, return_inverse=True)
+        return (size * delay)[:, :, None] * self._factor(n)[:, path]
+
+    def _factor(self, spatial_frequency: FloatArray) -> FloatArray:
+        """L of γ = L Lᵀ, shape (frequency, path, case)."""
+        paths = np.array(self.vehicle.paths)
+        across = np.array([self.vehicle.across[paths == path].mean() for path in np.unique(paths)])
+        if len(across) == 1:
+            return np.ones((spatial_frequency.size, 1, 1))
+        if isinstance(self.coherence, float):
+            same = np.where(np.eye(len(across), dtype=bool), 1.0, self.coherence)
+            shared: FloatArray = np.broadcast_to(same, (spatial_frequency.size, *same.shape))
+        else:
+            shared = _matrices(self.coherence, spatial_frequency, across)
+        values, vectors = np.linalg.eigh(shared)
+        if values.min() < -SEMIDEFINITE * len(across):
+            n = spatial_frequency[values.min(axis=1).argmin()]
+            raise ValueError(
+                "coherence must be positive semidefinite over the paths of the vehicle, but at "
+                f"{n:.4g} cycle/m its matrix has the eigenvalue {values.min():.3g}: no road can have it"
+            )
+        return vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
+
+
+def random_response(
+    guideway: Guideway,
+    vehicle: Vehicle,
+    spectrum: Spectrum,
+    *,
+    speed: float,
+    coherence: Coherence | float | None = None,
+    exposure: float = 600.0,
+    frequency: ArrayLike | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Stationary response of vehicle and road to a random road, in closed form from its spectrum.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    vehicle : Vehicle
+        The vehicle.
+    spectrum : IsoRoad or any Spectrum
+        One-sided spectrum of the elevation, the same for all paths.
+    speed : float
+        Speed [m/s].
+    coherence : Coherence or float, optional
+        What the paths have in common: `IsotropicCoherence()` for one, or a constant ratio of cross-spectrum to
+        spectrum, 1.0 for the same road on all paths, 0.0 for roads without anything in common. Needed where the
+        contacts follow several paths; the distance between two of them is that of the contacts that follow them.
+    exposure : float
+        Duration for which the largest value is expected [s].
+    frequency : array_like, shape (frequency,), optional
+        Frequencies at which spectral densities are wanted [Hz]. By default those that the integrals need: then a
+        moment ∫ fᵏ S df is the sum of fᵏ S · `bandwidth`. Statistics do not depend on this choice.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        For each of `contact_force`, `deflection` (contact), `motion`, `acceleration` (dof) and `roughness`
+        (contact), all about the steady state: `…_density` (frequency, …), one-sided, per Hz, zero outside the band
+        of the spectrum; `…_rms`; `…_crossing_rate`, upcrossings of zero per second, √(m₂/m₀); `…_peak_rate`,
+        maxima per second, √(m₄/m₂); `…_irregularity`, their quotient; `…_expected_peak`, the mean of the largest
+        value within the exposure on one side of the steady state, not of the largest magnitude. Also
+        `static_load`, `static_deflection`, `dynamic_load_coefficient`, `lift_off_share` and `lift_off_rate`
+        (contact), and `weighted_acceleration` (dof) after ISO 2631-1. Settings and findings in the attributes.
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible, a coherence is missing or none that a road can have, or memory does not hold the
+        result.
+    SolveError
+        If vehicle and guideway are unstable together, or a vibration without damping has no finite mean square.
+
+    Warns
+    -----
+    ValidityWarning
+        If contact is likely to be lost, the speed is near or above critical, or the contact force has content up to
+        the end of the spectrum's band.
+
+    References
+    ----------
+    D. E. Newland, An introduction to random vibrations, spectral and wavelet analysis, 3rd ed., Longman, 1993.
+    S. O. Rice, Mathematical analysis of random noise, Bell System Technical Journal 23 (1944), 24 (1945).
+    A. G. Davenport, Note on the distribution of the largest value of a random function with application to gust
+    loading, Proceedings of the Institution of Civil Engineers 28 (1964).
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> road = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9),
+    ...                 mf.Spring(stiffness=8.0e6, damping=3.0e4))
+    >>> truck = mf.quarter_car(body_mass=8900.0, wheel_mass=1100.0, suspension_stiffness=1e6,
+    ...                        suspension_damping=3e4, tyre_stiffness=3.5e6)
+    >>> found = mf.random_response(road, truck, mf.IsoRoad.of_class("B"), speed=20.0)
+    >>> round(found.dynamic_load_coefficient.item(), 3)
+    0.09
+    """
+    require_guideway(guideway)
+    require_vehicle(vehicle)
+    with checking() as check:
+        check.positive("speed", speed, "m/s")
+        check.positive("exposure", exposure, "s")
+        _check_spectrum(check, spectrum)
+        shared = _checked_coherence(check, coherence, len(set(vehicle.paths)))
+        wanted = None if frequency is None else check.array("frequency", frequency, "Hz", (None,))
+        if wanted is not None and not check.faults and not (wanted.size and wanted.min() >= 0):
+            least = f"{wanted.min():g} Hz" if wanted.size else "none"
+            check.refuse("frequency", f"must hold frequencies of at least zero [Hz], got {least}")
+    system = joined(guideway, vehicle, speed)
+    progress("steady state", 0.0)
+    steady = steady_state(system, system.sample(np.zeros(1, complex)))
+    require_stable(system, system.sample(along_the_axis(vehicle, speed)))
+    densities = _densities(system, _Road(vehicle=vehicle, spectrum=spectrum, coherence=shared, speed=speed))
+    progress("spectral densities", 0.0)
+    lines = _resolved(densities, vehicle, _edges(spectrum, speed))
+    statistics = _statistics(vehicle, lines, exposure)
+    force_rms, crossing = statistics["contact_force_rms"], statistics["contact_force_crossing_rate"]
+    lift_off_share, lift_off_rate = _lift_off(steady.load, force_rms, crossing)
+    critical_speed = float(guideway.critical_speed)
+    found = [
+        *_lifting_off(lift_off_share, lift_off_rate, exposure),
+        *find.near_critical(speed, critical_speed),
+        *_at_the_end(lines, vehicle, spectrum),
+    ]
+    if wanted is None:
+        axis: dict[str, ArrayLike] = {**coordinates(vehicle, lines.frequency), "bandwidth": lines.bandwidth}
+        shown = lines.density
+    else:
+        require_memory(BYTES_PER_VALUE * wanted.size * _outputs(vehicle), f"{wanted.size} frequencies")
+        axis, shown = coordinates(vehicle, wanted), densities(wanted)
+    values: dict[str, ArrayLike] = {
+        **axis,
+        "static_load": steady.load,
+        "static_deflection": steady.deflection,
+        **{f"{name}_density": shown[:, part] for name, part in _parts(vehicle).items()},
+        **statistics,
+        "dynamic_load_coefficient": load_coefficient(force_rms, steady.load),
+        "lift_off_share": lift_off_share,
+        "lift_off_rate": lift_off_rate,
+        # What does not move but for rounding is not felt either.
+        "weighted_acceleration": np.where(statistics["acceleration_rms"] > 0, _weighted(vehicle, lines), 0.0),
+    }
+    attributes: dict[str, str | float | int] = {
+        "title": "Stationary response of a vehicle and a guideway to a random road",
+        "movingfrf": VERSION,
+        "speed": float(speed),
+        "exposure": float(exposure),
+        "spectrum": repr(spectrum),
+        "coherence": repr(shared) if coherence is not None else "one path",
+        "lowest_frequency": float(spectrum.band[0] * speed),
+        "highest_frequency": float(spectrum.band[1] * speed),
+        "frequencies": lines.frequency.size,
+        "weightings": ", ".join(f"{name} for accelerations in {unit}/s2" for unit, name in WEIGHTING_OF.items()),
+        "critical_speed": critical_speed,
+        "guideway": repr(guideway),
+        "findings": find.announced(found),
+    }
+    return labelled(values, RANDOM, attributes)
+
+
+def peak_factor(crossings: ArrayLike) -> FloatArray:
+    """Give the expected largest value of a Gaussian process, over its root mean square.
+
+    Upcrossings of a high level are rare and independent, so that the largest value stays below u with the
+    probability exp(−N e^{−u²/2}), N the expected number of upcrossings of zero; the mean of that distribution is
+    returned. Its expansion for large N is Davenport's √(2 ln N) + 0.5772/√(2 ln N). Where the vibration comes in
+    bursts (an irregularity near 1) crossings are not independent and the factor is somewhat too large.
+
+    Parameters
+    ----------
+    crossings : array_like
+        Expected number of upcrossings of zero, dimensionless.
+
+    Returns
+    -------
+    ndarray
+        Peak factor, like `crossings`.
+
+    Examples
+    --------
+    >>> peak_factor([100.0, 1e4]).round(2).tolist()
+    [3.2, 4.42]
+    """
+    count = np.asarray(crossings, float)[..., None]
+    # Beyond the upper end the chance is below e^{-32}. Of an even, analytic function the trapezoidal rule converges
+    # exponentially.
+    end = np.sqrt(2 * np.log(np.maximum(count, 1.0))) + 8.0
+    level, step = end * np.linspace(0.0, 1.0, PEAK_POINTS), end[..., 0] / (PEAK_POINTS - 1)
+    exceeded: FloatArray = -np.expm1(-count * np.exp(-0.5 * level**2))
+    return step * (exceeded.sum(axis=-1) - 0.5 * exceeded[..., 0])
+
+
+def _check_spectrum(check: Checks, spectrum: object) -> None:
+    if isinstance(spectrum, type):
+        check.refuse("spectrum", f"must be a roughness spectrum, got the class {spectrum.__name__} itself")
+    elif not all(hasattr(spectrum, name) for name in ("band", "density", "variance_below")):
+        check.refuse(
+            "spectrum", f"must be a roughness spectrum, as IsoRoad is, got an object of {type(spectrum).__name__}"
+        )
+
+
+def _checked_coherence(check: Checks, coherence: Coherence | float | None, paths: int) -> Coherence | float:
+    """Coherence as a model or a float; anything will do for a single path."""
+    if coherence is None:
+        if paths > 1:
+            check.refuse(
+                "coherence",
+                f"is needed, since the contacts follow {paths} paths: a model such as IsotropicCoherence(), 1.0 "
+                "for the same road on all of them, or 0.0 for roads without anything in common",
+            )
+        return 1.0
+    if isinstance(coherence, Real):
+        ratio = check.not_negative("coherence", coherence, "1")
+        if ratio > 1:
+            check.refuse("coherence", f"must be at most 1, got {coherence!r}")
+        return ratio
+    if isinstance(coherence, type) or not hasattr(coherence, "between"):
+        check.refuse(
+            "coherence",
+            f"must be a model, as IsotropicCoherence() is, or a number between 0 and 1, got {shown(coherence)}",
+        )
+    return coherence
+
+
+def _matrices(coherence: Coherence, spatial_frequency: FloatArray, across: FloatArray) -> FloatArray:
+    """γ of a model over the paths, (frequency, path, path); one that breaks the contract of models is refused."""
+    shape = (spatial_frequency.size, across.size, across.size)
+    with checking() as check:
+        shared = np.asarray(coherence.between(spatial_frequency, across[:, None] - across))
+        if shared.shape != shape:
+            check.refuse("coherence", f"must return an array (frequency, path, path), {shape}, got {shared.shape}")
+        elif shared.dtype.kind not in "iuf" or not np.isfinite(shared).all():
+            check.refuse("coherence", "must return real, finite numbers: neither path is ahead of the other")
+        elif (np.abs(np.diagonal(shared, axis1=1, axis2=2) - 1) > SEMIDEFINITE).any():
+            check.refuse("coherence", "must be 1 between a path and itself, no distance apart")
+        elif (np.abs(shared - shared.swapaxes(1, 2)) > SEMIDEFINITE).any():
+            check.refuse("coherence", "must be the same from left to right as from right to left")
+    return shared
+
+
+def _parts(vehicle: Vehicle) -> dict[str, slice]:
+    """Columns of every quantity within the outputs."""
+    count = {"contact": len(vehicle.contacts), "dof": len(vehicle.dof_names)}
+    ends = np.cumsum([0, *(count[place] for place, _, _ in RANDOM_QUANTITIES.values())]).tolist()
+    return {name: slice(*ends[n : n + 2]) for n, name in enumerate(RANDOM_QUANTITIES)}
+
+
+def _outputs(vehicle: Vehicle) -> int:
+    return _parts(vehicle)["roughness"].stop
+
+
+def _densities(system: System, road: _Road) -> Callable[[FloatArray], FloatArray]:
+    """Spectral densities of all outputs, (frequency, output), as a function of the frequency [Hz]."""
+
+    def densities(frequency: FloatArray) -> FloatArray:
+        omega = 2 * np.pi * frequency
+        roughness = road.amplitudes(frequency)
+        found = responses(system, omega + 0j, roughness)
+        force, deflection, motion, elevation = (
+            (part.real**2 + part.imag**2).sum(axis=2) for part in (*found, roughness)
+        )
+        return np.hstack([force, deflection, motion, omega[:, None] ** 4 * motion, elevation])
+
+    return densities
+
+
+def _resolved(densities: Callable[[FloatArray], FloatArray], vehicle: Vehicle, edges: FloatArray) -> Lines:
+    """Frequencies that resolve the densities; where none do, the reason."""
+    comparable = np.eye(_outputs(vehicle)) + ROUNDING * _negligible(vehicle)
+    try:
+        return resolved(densities, edges, powers=POWERS, comparable=comparable)
+    except Unresolved as failure:
+        reason = (
+            "a vibration without damping has no finite root mean square"
+            if vehicle.damping_ratios.min(initial=np.inf) < NEXT_TO_NONE
+            else "no vibration of the vehicle is without damping, so that it may be rounding that varies there; at "
+            f"this speed the band of the road is {edges[0]:.3g} to {edges[-1]:.3g} Hz"
+        )
+        raise SolveError(f"{failure}: {reason}") from None
+
+
+def _edges(spectrum: Spectrum, speed: float) -> FloatArray:
+    """Octaves of the band [Hz]."""
+    low, high = (n * speed for n in spectrum.band)
+    return np.geomspace(low, high, max(int(np.ceil(np.log2(high / low))), 1) + 1)
+
+
+def _negligible(vehicle: Vehicle) -> FloatArray:
+    """Beside what an output is negligible, shape (output, output).
+
+    Contacts are compared with each other, degrees of freedom by the kinetic energy of their motion.
+    """
+    inertia = np.diag(vehicle.matrices[0])
+    among = {"contact": np.ones((len(vehicle.contacts),) * 2), "dof": inertia / inertia[:, None]}
+    whole = np.zeros((_outputs(vehicle),) * 2)
+    for name, part in _parts(vehicle).items():
+        whole[part, part] = among[RANDOM_QUANTITIES[name][0]]
+    return whole
+
+
+def _statistics(vehicle: Vehicle, lines: Lines, exposure: float) -> dict[str, FloatArray]:
+    """Statistics of every quantity by their names in the schema."""
+    variance, second, fourth = (lines.moment(power) for power in POWERS)
+    rounding = variance < ROUNDING * (_negligible(vehicle) @ variance)
+    variance, second, fourth = (np.where(rounding, 0.0, moment) for moment in (variance, second, fourth))
+    rms, crossing, peaks = np.sqrt(variance), _rate(second, variance), _rate(fourth, second)
+    columns = {
+        "rms": rms,
+        "crossing_rate": crossing,
+        "peak_rate": peaks,
+        "irregularity": crossing / peaks,
+        # What does not move has no peak either.
+        "expected_peak": rms * peak_factor(np.nan_to_num(crossing) * exposure),
+    }
+    return {
+        f"{name}_{statistic}": column[part]
+        for name, part in _parts(vehicle).items()
+        for statistic, column in columns.items()
+    }
+
+
+def _rate(above: FloatArray, below: FloatArray) -> FloatArray:
+    """√(mₖ₊₂/mₖ) [1/s]; nan for what does not move."""
+    return np.sqrt(np.divide(above, below, out=np.full_like(below, np.nan), where=below > 0))
+
+
+def _weighted(vehicle: Vehicle, lines: Lines) -> FloatArray:
+    """Root mean square acceleration with the weighting of its unit, shape (dof,)."""
+    from movingfrf.metrics.comfort import weighting
+
+    density = lines.density[:, _parts(vehicle)["acceleration"]]
+    found = np.empty(len(vehicle.dof_names))
+    units = coordinates(vehicle, lines.frequency)["dof_unit"]
+    for unit, name in WEIGHTING_OF.items():
+        gain = np.abs(weighting(name, lines.frequency)) ** 2
+        mine = np.asarray(units) == unit
+        found[mine] = np.sqrt((lines.bandwidth * gain) @ density[:, mine])
+    return found
+
+
+def _lift_off(load: FloatArray, rms: FloatArray, crossing: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Share of the time with a tensile total force, and how often it turns so [1/s], by Gauss and Rice."""
+    level = np.divide(load, rms, out=np.copysign(np.full_like(load, np.inf), load), where=rms > 0)
+    return ndtr(-level), np.nan_to_num(crossing) * np.exp(-0.5 * level**2)
+
+
+def _lifting_off(share: FloatArray, rate: FloatArray, exposure: float) -> list[Finding]:
+    """Contacts that are likely to lift off within the exposure."""
+    return [
+        Finding(
+            "contact_lost",
+            f"contact {contact} would lift off the road about {often:.2g} times in {exposure:g} s, for "
+            f"{100 * part:.2g} % of the time; the linear contact pulls there instead, so extremes of forces and "
+            "accelerations are not to be relied on",
+        )
+        for contact, (part, often) in enumerate(zip(share, rate * exposure, strict=True))
+        if often > LIFT_OFFS or part > LIFTED_OFF
+    ]
+
+
+def _at_the_end(lines: Lines, vehicle: Vehicle, spectrum: Spectrum) -> list[Finding]:
+    """Contact forces with content up to the end of the band."""
+    force = lines.density[:, _parts(vehicle)["contact_force"]]
+    last = lines.frequency > 0.9 * lines.frequency[-1]
+    share = float(((lines.bandwidth * last) @ force / lines.moment(0)[: force.shape[1]]).max())
+    if share <= AT_THE_END:
+        return []
+    return [
+        Finding(
+            "end_of_band",
+            f"{share:.1%} of the variance of a contact force lies in the highest tenth of the spectrum's band (up "
+            f"to {spectrum.band[1]:g} cycle/m): a wider band would add to it, a footprint of the tyre take away",
+        )
+    ]

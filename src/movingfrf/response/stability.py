@@ -1,0 +1,210 @@
+"""Does the coupled system ring itself up? The argument principle on det(I + D G)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from movingfrf._basics.checks import ComplexArray, FloatArray, SolveError
+from movingfrf.response.solve import Sample, System, unthreaded
+from movingfrf.vehicles.vehicle import Vehicle
+
+# The path runs this far below the real axis, relative to the frequency: a growth per radian too slow to see.
+BELOW_AXIS = 1e-6
+
+# Points of the path per decade, and around each pole of the vehicle: at distances that double from half of the
+# pole's own width up to `APART`, relative to its frequency. Every second point is the middle of an interval.
+PER_DECADE, APART = 16, 0.3
+
+# A change from one end of an interval to its middle, relative to the value and contact by contact, that needs no
+# closer look; how often an interval may be halved, and how many there may be at a time.
+LARGEST_CHANGE, HALVINGS, MOST_INTERVALS = 0.9, 24, 20_000
+
+# Natural frequencies further apart than this ratio leave no digits to the lower ones.
+WIDEST = 1e-9
+
+# Frequencies between which a mass that follows the road, without vibrations of its own, is looked at [rad/s].
+NO_POLES = 1.0, 1e3
+
+# Poles closer to each other than this share of their width need no points of their own; how many are compared.
+ALIKE, MOST_ALIKE = 0.1, 8
+
+# Points of the quarter circle from the end of the path down to the imaginary axis.
+ON_ARC = 24
+
+# Points with the smallest determinant from which a growing vibration is searched, to name it.
+SEARCHES = 12
+
+
+def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
+    """Frequencies from zero to far above the vehicle's poles [rad/s].
+
+    With elastic contacts det(I + D G) is a positive constant there. With rigid ones it grows like a power of the
+    frequency and keeps turning along the arc that closes the contour, so the path follows the arc down to the
+    imaginary axis, where the determinant is real and positive.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle.
+    speed : float
+        Speed, for the message [m/s].
+
+    Returns
+    -------
+    ndarray, shape (frequency,)
+        Ascending, just below the real axis: ends and middles of intervals in turn.
+
+    Raises
+    ------
+    SolveError
+        If the vehicle's natural frequencies lie too far apart for floating-point numbers.
+    """
+    poles, rigid = vehicle.poles, bool(np.isinf(vehicle.springs).any())
+    slowest, fastest = _extent(poles)
+    # A wheel that follows the road vibrates on it, faster than anything above it might.
+    fastest = max(fastest, NO_POLES[1]) if rigid else fastest
+    if not slowest > WIDEST * fastest:
+        raise SolveError(
+            f"the vehicle's natural frequencies, from {slowest / (2 * np.pi):.3g} to "
+            f"{fastest / (2 * np.pi):.3g} Hz, lie too far apart to be computed together at {speed:g} m/s"
+        )
+    lowest, highest = 1e-2 * slowest, 1e2 * fastest
+    base = np.geomspace(lowest, highest, int(np.log10(highest / lowest) * PER_DECADE) + 2)
+    path = np.unique(np.concatenate([[0.0], base, *map(_around, _distinct(poles))]))
+    if path.size % 2 == 0:
+        path = np.append(path, 2 * highest)
+    along = path * (1 - 1j * BELOW_AXIS)
+    if not rigid:
+        return along
+    return np.concatenate([along, path[-1] * np.exp(-0.5j * np.pi * np.arange(1, ON_ARC + 1) / ON_ARC)])
+
+
+def _extent(poles: ComplexArray) -> tuple[float, float]:
+    """Magnitude of the slowest and the fastest pole [rad/s]."""
+    return (float(np.abs(poles).min()), float(np.abs(poles).max())) if poles.size else NO_POLES
+
+
+def _distinct(poles: ComplexArray) -> ComplexArray:
+    """Poles without those that repeat others, as the cars of a train do."""
+    kept: list[complex] = []
+    for pole in poles.tolist():
+        # Ascending in magnitude, so that those alike are not far behind.
+        alike = (abs(pole - other) < ALIKE * abs(pole.real) for other in kept[-MOST_ALIKE:])
+        if not any(alike):
+            kept.append(pole)
+    return np.array(kept, complex)
+
+
+def _around(pole: complex) -> FloatArray:
+    """Frequencies around a pole, as close as a resonance of its width needs."""
+    width = min(max(abs(pole.real) / abs(pole), BELOW_AXIS), APART)
+    distances = 0.5 * width * 2.0 ** np.arange(int(np.log2(2 * APART / width)) + 1)
+    around: FloatArray = abs(pole) * (1 + np.concatenate([-distances, [0.0], distances]))
+    return around
+
+
+def growing_vibrations(system: System, along_axis: Sample) -> int:
+    """Count the vibrations of the coupled system that grow in time, conjugate pairs counted twice.
+
+    Every zero of det(I + D G) with Im ω < 0 turns the phase of the determinant by one full circle along the
+    real axis, and on along the arc where the path has one; it ends where the determinant is real and positive.
+
+    Parameters
+    ----------
+    system : System
+        Vehicle and road.
+    along_axis : Sample
+        Both sides at the frequencies of `along_the_axis`.
+
+    Returns
+    -------
+    int
+        Zero for a stable system.
+    """
+    path, matrices = along_axis.omega, along_axis.matrices()
+    first, middle, last = path[:-1:2], path[1::2], path[2::2]
+    at_first, at_middle, at_last = matrices[:-1:2], matrices[1::2], matrices[2::2]
+    turned = 0.0
+    for _ in range(HALVINGS):
+        factors = np.hstack([_factors(at_first, at_middle), _factors(at_middle, at_last)])
+        rough = (np.abs(factors - 1) > LARGEST_CHANGE).any(axis=1)
+        turned += np.angle(factors[~rough]).sum()
+        first, last = np.r_[first[rough], middle[rough]], np.r_[middle[rough], last[rough]]
+        at_first, at_last = np.r_[at_first[rough], at_middle[rough]], np.r_[at_middle[rough], at_last[rough]]
+        if not 0 < first.size < MOST_INTERVALS:
+            break
+        middle = 0.5 * (first + last)
+        at_middle = system.sample(middle).matrices()
+    turned += np.angle(_factors(at_first, at_last)).sum()
+    return max(round(-float(turned) / np.pi), 0)
+
+
+def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
+    """Eigenvalues of X₁⁻¹X₂, shape (interval, contact): by their product the determinant changes.
+
+    One by one they stay near 1 where the determinant itself, their product, may turn by full circles.
+    """
+    count = before.shape[1]
+    if count == 1:
+        return (after / before)[:, :, 0]
+    if count == 2:
+        (a, b), (c, d) = before[:, 0].T, before[:, 1].T
+        (e, f), (g, h) = after[:, 0].T, after[:, 1].T
+        determinant = a * d - b * c
+        half = 0.5 * (d * e - b * g + a * h - c * f) / determinant
+        root = np.sqrt(half * half - (e * h - f * g) / determinant)
+        return np.stack([half + root, half - root], axis=1)
+    return np.linalg.eigvals(np.linalg.solve(before, after)).astype(complex)
+
+
+def require_stable(system: System, along_axis: Sample) -> None:
+    """Refuse a system that rings itself up: it has no steady state to vibrate about.
+
+    Parameters
+    ----------
+    system : System
+        Vehicle and road.
+    along_axis : Sample
+        Both sides at the frequencies of `along_the_axis`.
+
+    Raises
+    ------
+    SolveError
+        If a vibration grows, with its frequency and growth where they can be found.
+    """
+    with unthreaded(len(system.vehicle.contacts)):
+        growing = growing_vibrations(system, along_axis)
+    if growing:
+        raise SolveError(
+            f"vehicle and guideway are unstable together at {system.speed:g} m/s: {_described(system)}; "
+            "the motion feeds a vibration that grows without bound, so there is no steady response"
+        )
+
+
+def _described(system: System) -> str:
+    """Describe the fastest growing vibration: a zero of the determinant in the lower half-plane."""
+    slowest, fastest = _extent(system.vehicle.poles)
+    across = np.geomspace(0.1 * slowest, 10 * fastest, 80)
+    omega = (across[:, None] * (1 - 1j * np.geomspace(1e-4, 2.0, 16))).ravel()
+    size = np.abs(np.linalg.det(system.sample(omega).matrices()))
+    zeros = [_zero(system, start) for start in omega[np.argsort(size)[:SEARCHES]]]
+    growing = [zero for zero in zeros if zero is not None]
+    if not growing:
+        return "a vibration grows"
+    worst = min(growing, key=lambda zero: zero.imag)
+    return f"a vibration of {worst.real / (2 * np.pi):.4g} Hz grows as e^({-worst.imag:.4g} t)"
+
+
+def _zero(system: System, start: complex) -> complex | None:
+    """Zero of the determinant near a point of the lower half-plane, by the secant method; None if it leaves."""
+    before, now = start, start * 1.001
+    for _ in range(60):
+        at_before, at_now = np.linalg.det(system.sample(np.array([before, now])).matrices())
+        if abs(at_now) < 1e-10:
+            return now
+        if at_now == at_before:
+            return None
+        before, now = now, complex(now - at_now * (now - before) / (at_now - at_before))
+        if now.imag >= 0 or not np.isfinite(now):
+            return None
+    return None

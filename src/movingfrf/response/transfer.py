@@ -1,0 +1,174 @@
+"""What a unit of roughness under a contact does, frequency by frequency."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import movingfrf.results.findings as find
+from movingfrf._basics.checks import ComplexArray, FloatArray, SolveError, checking, require_memory
+from movingfrf._basics.version import VERSION
+from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.response.solve import System, chunk_for, joined, product, solve_contacts, unthreaded
+from movingfrf.response.stability import along_the_axis, require_stable
+from movingfrf.results.labels import TRANSFER, labelled
+from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# Bytes per frequency, output and contact at the peak of a computation.
+BYTES_PER_VALUE = 100
+
+
+class Responses(NamedTuple):
+    """What a roughness under the contacts adds to the steady state; every array (frequency, output, case)."""
+
+    force: ComplexArray  # [N]
+    deflection: ComplexArray  # [m]
+    motion: ComplexArray  # [m or rad]
+
+
+def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: ArrayLike) -> xr.Dataset:
+    """Response of vehicle and road per metre of roughness under each contact.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    vehicle : Vehicle
+        The vehicle.
+    speed : float
+        Speed [m/s].
+    frequency : array_like, shape (frequency,)
+        Frequencies [Hz]; zero is allowed.
+
+    Returns
+    -------
+    xarray.Dataset
+        Complex amplitudes per metre of elevation under the contact `source`, the others rolling on a smooth road:
+        `contact_force` [N/m] and `deflection` [m/m] (frequency, contact, source), `motion` and `acceleration`
+        (frequency, dof, source). A road that the contacts meet one after the other reaches each with its own
+        phase e^{iωx/v}, x the contact's position.
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible or memory does not hold the result.
+    SolveError
+        If vehicle and guideway are unstable together, or a frequency is singular.
+
+    Warns
+    -----
+    ValidityWarning
+        If the speed is near or above critical.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> car = mf.quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                      suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> found = mf.transfer(mf.RigidGuideway(), car, speed=10.0, frequency=[0.0, 1.0])
+    >>> abs(found.motion.sel(dof="body")).values.ravel().round(3).tolist()
+    [1.0, 2.46]
+    """
+    require_guideway(guideway)
+    require_vehicle(vehicle)
+    with checking() as check:
+        check.positive("speed", speed, "m/s")
+        lines = check.array("frequency", frequency, "Hz", (None,))
+        if not check.faults and (not lines.size or lines.min() < 0):
+            least = f"{lines.min():g} Hz" if lines.size else "none"
+            check.refuse("frequency", f"must hold frequencies of at least zero [Hz], got {least}")
+    contacts, dofs = len(vehicle.contacts), len(vehicle.dof_names)
+    require_memory(
+        BYTES_PER_VALUE * lines.size * contacts * (contacts + dofs), f"a transfer over {lines.size} frequencies"
+    )
+    system = joined(guideway, vehicle, speed)
+    require_stable(system, system.sample(along_the_axis(vehicle, speed)))
+    unit = vehicle.enveloping(2 * np.pi * lines / speed)[:, :, None] * np.eye(contacts)
+    omega = 2 * np.pi * lines
+    found = responses(system, omega + 0j, unit + 0j)
+    critical_speed = float(guideway.critical_speed)
+    values: dict[str, ArrayLike] = {
+        **coordinates(vehicle, lines),
+        "source": np.arange(contacts),
+        "contact_force": found.force,
+        "deflection": found.deflection,
+        "motion": found.motion,
+        "acceleration": -(omega[:, None, None] ** 2) * found.motion,
+    }
+    attributes: dict[str, str | float | int] = {
+        "title": "Response of a vehicle and a guideway per unit of roughness",
+        "movingfrf": VERSION,
+        "speed": float(speed),
+        "critical_speed": critical_speed,
+        "guideway": repr(guideway),
+        "findings": find.announced(find.near_critical(speed, critical_speed)),
+    }
+    return labelled(values, TRANSFER, attributes)
+
+
+def responses(system: System, omega: ComplexArray, roughness: ComplexArray) -> Responses:
+    """Solve the coupled system for any number of cases of roughness under the contacts.
+
+    Parameters
+    ----------
+    system : System
+        Vehicle and road.
+    omega : ndarray, shape (frequency,)
+        Angular frequency [rad/s].
+    roughness : ndarray, shape (frequency, contact, case)
+        Elevation under the contacts [m].
+
+    Returns
+    -------
+    Responses
+        Force and deflection at the contacts, and motion of the vehicle.
+
+    Raises
+    ------
+    SolveError
+        If a frequency is singular.
+    """
+    vehicle, cases = system.vehicle, roughness.shape[2]
+    contacts, dofs = len(vehicle.contacts), len(vehicle.dof_names)
+    found = Responses(*(np.empty((omega.size, outputs, cases), complex) for outputs in (contacts, contacts, dofs)))
+    step = chunk_for(contacts)
+    with unthreaded(contacts):
+        for first in range(0, omega.size, step):
+            some = slice(first, first + step)
+            _, frf, stiffness = system.sample(omega[some])
+            found.force[some] = solve_contacts(frf, stiffness, roughness[some])
+            found.deflection[some] = product(frf, found.force[some])
+            displacement = found.deflection[some] - roughness[some]
+            for case in range(cases):
+                found.motion[some, :, case] = system.motion(omega[some], displacement[:, :, case])
+    singular = ~np.isfinite(sum(np.abs(part).sum(axis=(1, 2)) for part in found))
+    if singular.any():
+        raise SolveError(
+            f"vehicle and guideway have no finite response at {omega[singular][0].real / (2 * np.pi):.6g} Hz and "
+            f"{system.speed:g} m/s: a vibration without damping is driven at its own frequency"
+        )
+    return found
+
+
+def coordinates(vehicle: Vehicle, frequency: FloatArray) -> dict[str, ArrayLike]:
+    """Coordinates of a result over frequency by their names in the schema.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle.
+    frequency : ndarray, shape (frequency,)
+        Frequency [Hz].
+
+    Returns
+    -------
+    dict
+        Frequencies, contacts and degrees of freedom.
+    """
+    return {"frequency": frequency, "omega": 2 * np.pi * frequency, **vehicle.coordinates}

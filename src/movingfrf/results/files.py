@@ -1,0 +1,178 @@
+"""Results on disk: complete or not at all."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import io
+import json
+import os
+import secrets
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from movingfrf._basics.checks import finite
+from movingfrf.metrics.measures import Measure
+from movingfrf.results.labels import COUPLED, LOADED, flaws
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@contextmanager
+def replacing(folder: Path) -> Iterator[Path]:
+    """Lend a temporary folder and move what was written there into `folder` at the end.
+
+    The temporary folder lies inside `folder`, so that a move is a renaming. If the block fails nothing is
+    moved, everything that stood in `folder` stands there still, and a folder made for this goes again.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the files shall appear; made if it does not exist.
+
+    Yields
+    ------
+    Path
+        An empty folder to write into, also into folders within it.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be made or written.
+    """
+    missing = [parent for parent in (folder, *folder.parents) if not parent.exists()]
+    # Named before it is made: whatever interrupts finds it.
+    temporary, done = folder / f".partial-{secrets.token_hex(4)}", False
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            temporary.mkdir()
+            yield temporary
+            written = {file: folder / file.relative_to(temporary) for file in sorted(temporary.rglob("*"))}
+            for file, target in written.items():
+                if target.is_dir() and not file.is_dir():
+                    raise IsADirectoryError(errno.EISDIR, "is a folder", str(target))
+                if target.is_file() and file.is_dir():
+                    raise NotADirectoryError(errno.ENOTDIR, "is a file where a folder is needed", str(target))
+            for file, target in written.items():
+                if file.is_dir():
+                    target.mkdir(exist_ok=True)
+                else:
+                    os.replace(file, target)
+            done = True
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
+    finally:
+        if not done:
+            for made in missing:
+                if made.is_dir() and not any(made.iterdir()):
+                    made.rmdir()
+
+
+def save(result: xr.Dataset, file: Path) -> None:
+    """Save a result as netCDF, which xarray, MATLAB and others open.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        Any result of the package.
+    file : Path
+        The file.
+    """
+    result.to_netcdf(file, engine="h5netcdf")
+
+
+def load(file: Path) -> xr.Dataset:
+    """Open a result that `save` wrote.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+
+    Returns
+    -------
+    xarray.Dataset
+        The result, wholly in memory.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If it is not netCDF, no result of the package, or lacks a variable or a finite number in one.
+    """
+    import xarray as xr
+
+    # Asked first, since the library below hides why a file cannot be read in half a page of text.
+    with file.open("rb"):
+        pass
+    try:
+        with xr.open_dataset(file, engine="h5netcdf") as opened:
+            result: xr.Dataset = opened.load()
+    except OSError:
+        raise ValueError(f"{file}: is not a netCDF file, or a damaged one") from None
+    if "contact_force_density" in result:
+        raise ValueError(
+            f"{file}: holds the response to a random road, which `movingfrf random` has measured already, see its "
+            "summary.json; `movingfrf measure` takes histories, as `movingfrf run` writes them"
+        )
+    if "movingfrf" not in result.attrs:
+        raise ValueError(f"{file}: is no result of movingfrf")
+    schema = LOADED if "load" in result.dims else COUPLED
+    lacking = [name for name in ("speed", "time_step", "findings") if name not in result.attrs]
+    found = [f"lacks the attribute {name}" for name in lacking]
+    found += flaws(result, [name for name, label in schema.items() if not label.optional])
+    if found:
+        raise ValueError(f"{file}: {'; '.join(found)}")
+    return result
+
+
+def measures_as_csv(found: list[Measure]) -> str:
+    """Write measures as a table, one a line, with units and standards.
+
+    Parameters
+    ----------
+    found : list of Measure
+        The measures.
+
+    Returns
+    -------
+    str
+        CSV text with a header; numbers with all their digits.
+    """
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(Measure._fields)
+    table.writerows(found)
+    return text.getvalue()
+
+
+def summary(result: xr.Dataset, found: list[Measure]) -> str:
+    """Summarise a result as JSON: settings, measures and findings.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        Any result of the package.
+    found : list of Measure
+        Its measures.
+
+    Returns
+    -------
+    str
+        JSON text; a number without a finite value is null.
+    """
+    settings: Mapping[str, Any] = {
+        key: value for key, value in result.attrs.items() if key not in ("findings", "scenario")
+    }
+    content = {
+        "settings": settings,
+        "measures": [measure._asdict() for measure in found],
+        "findings": json.loads(result.attrs["findings"]),
+    }
+    return json.dumps(finite(content), indent=1, ensure_ascii=False) + "\n"

@@ -1,0 +1,114 @@
+"""Where a result leaves the assumptions it was computed under, in plain words."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._basics.checks import ComplexArray, FloatArray, ValidityWarning
+
+# Share of the critical speed from which on it is worth a word.
+NEAR_CRITICAL = 0.8
+
+# What may wrap around from the end of the padding, and what a truncation may change, relative to a whole record.
+TOLERATED = 1e-3
+
+# Share of the roughness that may lie in the highest tenth of the frequencies, as an amplitude.
+AT_NYQUIST = 0.01
+
+
+class Finding(NamedTuple):
+    """One thing to know about a result."""
+
+    code: str
+    message: str
+
+
+def contact_lost(total_force: FloatArray, time_step: float) -> list[Finding]:
+    """Total contact forces, shape (time, contact) [N], that turn to tension, which no tyre can carry."""
+    found = []
+    for contact, force in enumerate(total_force.T):
+        lifted = force < 0
+        if lifted.any():
+            found.append(
+                Finding(
+                    "contact_lost",
+                    f"contact {contact} would lift off the road during {lifted.mean():.2%} of the time, first at "
+                    f"{lifted.argmax() * time_step:.3f} s; the linear contact pulls there instead, so forces "
+                    "and accelerations around those instants are not to be relied on",
+                )
+            )
+    return found
+
+
+def near_critical(speed: float, critical_speed: float) -> list[Finding]:
+    """Speed [m/s] close to or above the critical speed [m/s]."""
+    if speed < NEAR_CRITICAL * critical_speed:
+        return []
+    where = "above" if speed > critical_speed else "close to"
+    return [
+        Finding(
+            "critical_speed",
+            f"the speed of {speed:.4g} m/s is {where} the critical speed of {critical_speed:.4g} m/s: deflections "
+            "depend strongly on speed and damping there",
+        )
+    ]
+
+
+def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Finding]:
+    """Compare what wraps around from the end of the padding (channel,) with records (time, channel)."""
+    size = np.sqrt([channel @ channel / len(channel) for channel in values.T])
+    left = np.divide(wrapped, size, out=np.zeros_like(size), where=size > 0).max(initial=0.0)
+    if left <= TOLERATED:
+        return []
+    return [
+        Finding(
+            "not_decayed",
+            f"the {name} has not died away at the end of the padded record; up to {left:.1e} of it wraps around to "
+            "the start. More damping, or a longer duration, would let it decay",
+        )
+    ]
+
+
+def beyond_truncation(truncation: float, error: float) -> list[Finding]:
+    """Say what a truncation [Hz] may change, relative to the whole record."""
+    if error <= TOLERATED:
+        return []
+    return [
+        Finding(
+            "beyond_truncation",
+            f"the road counts as rigid beyond {truncation:g} Hz, which may change an output by {error:.1e} of its "
+            "root mean square; a higher truncation changes less",
+        )
+    ]
+
+
+def beyond_nyquist(roughness: ComplexArray, time_step: float) -> list[Finding]:
+    """Roughness spectra, shape (frequency, contact), that reach up to the Nyquist frequency."""
+    squared = np.arange(len(roughness), dtype=float) ** 2
+    first = int(0.9 * len(roughness))
+    share = 0.0
+    for spectrum in roughness.T:
+        energy = (spectrum.real**2 + spectrum.imag**2) * squared
+        if energy.any():
+            share = max(share, float(np.sqrt(energy[first:].sum() / energy.sum())))
+    if share <= AT_NYQUIST:
+        return []
+    return [
+        Finding(
+            "beyond_nyquist",
+            f"{share:.1%} of the slope of the road, as seen by a contact, lies in the highest tenth of the "
+            f"frequencies that a step of {time_step:g} s resolves (up to {0.5 / time_step:g} Hz); "
+            "a shorter time step, or a smoother profile, is needed",
+        )
+    ]
+
+
+def announced(found: list[Finding]) -> str:
+    """Warn of every finding and return them all as the JSON text that a result carries."""
+    for finding in found:
+        warnings.warn(finding.message, ValidityWarning, stacklevel=3)
+    return json.dumps([finding._asdict() for finding in found])

@@ -1,0 +1,176 @@
+"""Road profiles: elevation over distance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from hashlib import blake2b
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._basics.checks import FloatArray, checking
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Profile:
+    """Elevation of a road over distance; between its samples a cubic spline.
+
+    Parameters
+    ----------
+    distance : array_like, shape (distance,)
+        Stations along the road [m], increasing; at least four.
+    elevation : array_like, shape (distance,) or (distance, path)
+        Elevation [m], positive up: the same for all paths, or one column for each.
+    source : str
+        Where it comes from: a file, a spectrum.
+    steps : tuple of str
+        What was done to it since, one sentence each, in order.
+    across : tuple of float, length path, optional
+        Lateral position of each path [m], positive to the left, where it is known.
+
+    Raises
+    ------
+    ValueError
+        If stations do not increase, values are not finite, or shapes disagree.
+
+    Examples
+    --------
+    >>> Profile([0.0, 1.0, 2.0, 3.0], [0.0, 0.01, 0.0, -0.01]).paths
+    1
+    """
+
+    distance: ArrayLike
+    elevation: ArrayLike
+    source: str = ""
+    steps: tuple[str, ...] = ()
+    across: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        with checking() as check:
+            distance = check.array("distance", self.distance, "m", (None,))
+            paths = 1 if np.ndim(self.elevation) < 2 else None
+            shape = (None, None) if paths is None else (None,)
+            elevation = check.array("elevation", self.elevation, "m", shape)
+            if not check.faults:
+                if distance.size < 4:
+                    check.refuse("distance", f"must have at least 4 stations, got {distance.size}")
+                if distance.size != len(elevation):
+                    check.refuse(
+                        "elevation",
+                        f"must have {distance.size} values, one per station, got {len(elevation)}",
+                    )
+                falls = np.flatnonzero(np.diff(distance) <= 0)
+                if falls.size:
+                    n = int(falls[0])
+                    check.refuse(
+                        "distance",
+                        f"must increase, got {distance[n]:g} m followed by {distance[n + 1]:g} m at index {n + 1}",
+                    )
+            across = None if self.across is None else check.array("across", self.across, "m", (None,))
+            count = 1 if elevation.ndim == 1 else elevation.shape[1]
+            if across is not None and across.size != count:
+                check.refuse("across", f"must have one position [m] for each path, {count}, got {across.size}")
+        object.__setattr__(self, "distance", distance)
+        object.__setattr__(self, "elevation", elevation)
+        object.__setattr__(self, "steps", tuple(self.steps))
+        object.__setattr__(self, "across", None if across is None else tuple(across.tolist()))
+
+    @property
+    def stations(self) -> FloatArray:
+        """Stations [m], shape (distance,)."""
+        return np.asarray(self.distance, float)
+
+    @property
+    def paths(self) -> int:
+        """Number of paths."""
+        elevation = np.asarray(self.elevation)
+        return 1 if elevation.ndim == 1 else elevation.shape[1]
+
+    @property
+    def columns(self) -> FloatArray:
+        """Elevations with one column per path [m], shape (distance, path)."""
+        elevation = np.asarray(self.elevation, float)
+        return elevation[:, None] if elevation.ndim == 1 else elevation
+
+    def even_step(self, within: float = 1e-6) -> float | None:
+        """Distance between stations if it is the same throughout.
+
+        Parameters
+        ----------
+        within : float
+            How far a station may lie from an even grid, as a share of the step.
+
+        Returns
+        -------
+        float or None
+            Step [m]; None if the stations are uneven.
+        """
+        stations = self.stations
+        step = float((stations[-1] - stations[0]) / (stations.size - 1))
+        off = np.abs(stations - (stations[0] + step * np.arange(stations.size))).max()
+        # Stations are no more even than numbers of their size can say.
+        return step if off <= within * step + 8 * np.spacing(np.abs(stations[[0, -1]]).max()) else None
+
+    def require_even(self, what: str) -> float:
+        """Distance between stations, which must be the same throughout.
+
+        Parameters
+        ----------
+        what : str
+            What needs an even step, for the message.
+
+        Returns
+        -------
+        float
+            Step [m].
+
+        Raises
+        ------
+        ValueError
+            If the stations are uneven.
+        """
+        step = self.even_step()
+        if step is None:
+            steps = np.diff(self.stations)
+            raise ValueError(
+                f"{what} needs stations at an even step, but they are {steps.min():.4g} to {steps.max():.4g} m "
+                "apart; resample the profile first, in Python by `resampled`, else by `movingfrf convert --step`"
+            )
+        return step
+
+    @property
+    def same_across(self) -> bool:
+        """Whether all paths have the same elevation: there are no columns."""
+        return np.ndim(self.elevation) == 1
+
+    @property
+    def alike(self) -> list[list[int]]:
+        """Numbers of the paths, those of equal elevation together: one list if all are equal."""
+        groups: dict[bytes, list[int]] = {}
+        for path, column in enumerate(self.columns.T):
+            # A sum with zero is contiguous, and knows one zero only.
+            groups.setdefault(blake2b(column + 0.0).digest(), []).append(path)
+        return list(groups.values())
+
+    def along(self, path: int = 0) -> CubicSpline:
+        """Elevation of one path as a function of distance: the cubic spline through its samples.
+
+        Parameters
+        ----------
+        path : int
+            Number of the path.
+
+        Returns
+        -------
+        scipy.interpolate.CubicSpline
+            Callable with any array of distances [m] on the profile; gives elevations [m].
+        """
+        from scipy.interpolate import CubicSpline
+
+        elevation = np.asarray(self.elevation)
+        return CubicSpline(self.stations, elevation if elevation.ndim == 1 else elevation[:, path])

@@ -1,0 +1,1 @@
+"""Spectra of roughness, one module per family."""

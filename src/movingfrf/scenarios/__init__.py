@@ -1,0 +1,1 @@
+"""Scenario files: what a user wrote, read, checked and said in words."""

@@ -1,0 +1,242 @@
+"""What a scenario says, in lines to read, without solving it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from movingfrf._basics import wording
+from movingfrf._basics.checks import FloatArray
+from movingfrf.response.line import SpectralGrid
+from movingfrf.response.simulation import BYTES_PER_SAMPLE, spectral_grid
+from movingfrf.response.solve import joined, steady_state
+from movingfrf.results.findings import near_critical
+from movingfrf.roughness.fitting import fit_iso, welch
+from movingfrf.scenarios.roads import Road
+from movingfrf.scenarios.scenario import Scenario
+from movingfrf.vehicles.modes import Mode, vehicle_modes
+from movingfrf.vehicles.vehicle import Vehicle
+
+# A section: its heading and its lines of name and value.
+Section = tuple[str, list[tuple[str, str]]]
+
+# Less than this share of critical damping, and a longer footprint [m], are worth a remark.
+LITTLE_DAMPING, LONG_FOOTPRINT = 0.02, 1.0
+
+# Words and contacts of a list that are written out, and the difference between poles that count as one.
+MOST_WORDS, MOST_CONTACTS, SAME_POLE = 14, 12, 1e-6
+
+
+def described(scenario: Scenario) -> list[Section]:
+    """Describe a scenario.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        A checked scenario.
+
+    Returns
+    -------
+    list of (str, list of (str, str))
+        Headings, each with lines of name and value.
+    """
+    sections: list[Section] = [("Guideway", _guideway(scenario))]
+    if scenario.vehicle is not None:
+        vehicle, _, vibrations = described_vehicle(scenario.vehicle)
+        sections += [vehicle, ("Contacts in steady travel", _steady_contacts(scenario)), vibrations]
+    if scenario.road is not None:
+        sections.append(("Roughness", _roughness(scenario.road)))
+    if scenario.loads is not None:
+        sections.append(("Loads", _loads(scenario)))
+    return [*sections, ("Run", _run(scenario))]
+
+
+def remarks(scenario: Scenario) -> list[str]:
+    """Say what a scenario that is in order nevertheless invites to look at again.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        A checked scenario.
+
+    Returns
+    -------
+    list of str
+        Sentences; empty if there is nothing to remark.
+    """
+    journey, vehicle = scenario.journey, scenario.vehicle
+    found = [finding.message for finding in near_critical(journey.speed, float(scenario.guideway.critical_speed))]
+    if vehicle is None:
+        return found
+    frequencies, ratios = vehicle.natural_frequencies, vehicle.damping_ratios
+    fastest, nyquist = float(frequencies.max(initial=0.0)), 0.5 / journey.time_step
+    if fastest > nyquist:
+        found.append(
+            f"the vehicle vibrates at up to {fastest:.4g} Hz, but a step of {journey.time_step:g} s resolves only "
+            f"{nyquist:.4g} Hz"
+        )
+    if frequencies.size and ratios.min() < LITTLE_DAMPING:
+        found.append(
+            f"a vibration of the vehicle at {frequencies[ratios.argmin()]:.3g} Hz has {100 * ratios.min():.2g} % "
+            "of critical damping: it takes long to settle, and its size depends on that number"
+        )
+    longest = max((contact.footprint for contact in vehicle.contacts), default=0.0)
+    if longest > LONG_FOOTPRINT:
+        found.append(f"a footprint of {longest:g} m is longer than that of any tyre")
+    return found
+
+
+def _guideway(scenario: Scenario) -> list[tuple[str, str]]:
+    critical, speed = scenario.guideway.critical_speed, scenario.journey.speed
+    share = "" if np.isinf(critical) else f", of which the speed is {speed / critical:.3g}"
+    return [
+        ("kind", type(scenario.guideway).__name__),
+        ("critical speed", "none" if np.isinf(critical) else f"{critical:.5g} m/s{share}"),
+    ]
+
+
+def _steady_contacts(scenario: Scenario) -> list[tuple[str, str]]:
+    assert scenario.vehicle is not None
+    system = joined(scenario.guideway, scenario.vehicle, scenario.journey.speed)
+    steady = steady_state(system, system.sample(np.zeros(1, complex)))
+    return _contacts(scenario.vehicle, steady.load, steady.deflection)
+
+
+def described_vehicle(vehicle: Vehicle) -> list[Section]:
+    """Describe a vehicle on its own, on a rigid road.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle.
+
+    Returns
+    -------
+    list of (str, list of (str, str))
+        Headings, each with lines of name and value: degrees of freedom and weight, contacts, vibrations.
+    """
+    return [
+        (
+            "Vehicle",
+            [
+                ("degrees of freedom", _enumerated(vehicle.dof_names)),
+                ("weight", f"{vehicle.static_loads.sum() / 1e3:.2f} kN"),
+            ],
+        ),
+        ("Contacts", _contacts(vehicle, vehicle.static_loads)),
+        ("Vibrations on a rigid road", _vibrations(vehicle)),
+    ]
+
+
+def _enumerated(words: Sequence[str]) -> str:
+    """Words with commas between them, the middle ones left out where there are many."""
+    if len(words) <= MOST_WORDS:
+        return ", ".join(words)
+    return f"{', '.join(words[: MOST_WORDS - 2])}, …, {words[-1]} ({len(words)} in all)"
+
+
+def _contacts(vehicle: Vehicle, loads: FloatArray, sags: FloatArray | None = None) -> list[tuple[str, str]]:
+    """One line per contact: name and number, then where it is, what it carries and how it is held."""
+    lines = []
+    for number, (contact, load) in enumerate(zip(vehicle.contacts, loads, strict=True)):
+        place = f"at {contact.position:g} m" + (f", {contact.across:+g} m across" if contact.across else "")
+        held = "rigid" if contact.rigid else f"{contact.stiffness:.4g} N/m"
+        if contact.damping:
+            held += f", {contact.damping:.4g} N s/m"
+        patch = f", footprint {contact.footprint:g} m" if contact.footprint else ""
+        cams = f", cams {contact.cams:g} m apart" if contact.cams else ""
+        sag = "" if sags is None else f", deflection {sags[number] * 1e3:.3f} mm"
+        path = f", path {contact.path}" if contact.path else ""
+        name = f"{number} {contact.name}".rstrip()
+        lines.append((name, f"{place}{path}, {load / 1e3:.2f} kN{sag}, {held}{patch}{cams}"))
+    if len(lines) <= MOST_CONTACTS:
+        return lines
+    left_out = len(lines) - MOST_CONTACTS + 1
+    return [*lines[: MOST_CONTACTS - 2], ("…", f"{left_out} more"), lines[-1]]
+
+
+def _vibrations(vehicle: Vehicle) -> list[tuple[str, str]]:
+    """One line per natural frequency; the equal ones of equal cars share a line."""
+    groups: list[list[Mode]] = []
+    for mode in vehicle_modes(vehicle):
+        if groups and abs(mode.pole - groups[-1][0].pole) < SAME_POLE * abs(mode.pole):
+            groups[-1].append(mode)
+        else:
+            groups.append([mode])
+    if not groups:
+        return [("none", "every motion is prescribed by a rigid contact")]
+    return [
+        (
+            f"{group[0].frequency:.3f} Hz" + (f" ({len(group)} times)" if len(group) > 1 else ""),
+            f"{100 * group[0].damping_ratio:.1f} % damping: {_alike(group)}",
+        )
+        for group in groups
+    ]
+
+
+def _alike(group: Sequence[Mode]) -> str:
+    """Describe vibrations of one frequency: two in full, of more the first."""
+    return (
+        "; ".join(mode.description for mode in group) if len(group) <= 2 else f"{group[0].description}, and alike"
+    )
+
+
+def _roughness(road: Road) -> list[tuple[str, str]]:
+    profile = road.profile
+    stations = profile.stations
+    elevation = np.asarray(profile.elevation)
+    lines = [
+        ("source", road.description),
+        ("stations", f"{stations.size} from {stations[0]:.6g} m to {stations[-1]:.6g} m"),
+        ("elevation", f"{elevation.min():.4g} m to {elevation.max():.4g} m"),
+    ]
+    if road.spectrum is not None:
+        return [*lines, ("fitted spectrum", "none: it was made from the spectrum above")]
+    step = float(np.median(np.diff(stations)))
+    for paths in profile.alike:
+        fit = fit_iso(*welch(profile.along(paths[0])(np.arange(stations[0], stations[-1], step)), step))
+        of = "" if profile.paths == 1 else f" of {wording.paths(paths)}"
+        if fit.reason:
+            lines.append((f"ISO 8608 class{of}", f"none: {fit.reason}"))
+            continue
+        at_two = f"{fit.road_class} ({fit.roughness_at_two:.3g} m³ at 0.1 cycle/m with waviness 2)"
+        lines += [
+            (
+                f"fitted spectrum{of}",
+                f"{fit.roughness:.3g} m³ at 0.1 cycle/m with waviness {fit.waviness:.2f}, over {fit.covered}",
+            ),
+            (f"ISO 8608 class{of}", f"{at_two}; {fit.doubt}" if fit.doubt else at_two),
+        ]
+    return lines
+
+
+def _loads(scenario: Scenario) -> list[tuple[str, str]]:
+    loads, journey = scenario.loads, scenario.journey
+    assert loads is not None
+    time = np.arange(journey.samples) * journey.time_step
+    lines = [("observed at", ", ".join(f"{x:g} m" for x in loads.observe))]
+    for position, history in zip(loads.positions, loads.histories, strict=True):
+        force = history(time)
+        lines.append((f"load at {position:g} m", f"{force.min() / 1e3:.4g} to {force.max() / 1e3:.4g} kN"))
+    return lines
+
+
+def _run(scenario: Scenario) -> list[tuple[str, str]]:
+    journey = scenario.journey
+    if scenario.vehicle is not None:
+        grid = spectral_grid(journey, scenario.vehicle)
+        channels = len(scenario.vehicle.contacts) + len(scenario.vehicle.dof_names)
+    else:
+        assert scenario.loads is not None
+        grid = SpectralGrid(samples=journey.samples, time_step=journey.time_step, truncation=journey.truncation)
+        channels = len(scenario.loads.positions) + len(scenario.loads.observe)
+    memory = BYTES_PER_SAMPLE * channels * grid.padded
+    kept = f"{grid.kept} of them with the road" if journey.truncation is not None else "the truncation is found"
+    return [
+        ("speed", f"{journey.speed:g} m/s ({3.6 * journey.speed:g} km/h)"),
+        ("travel", f"{journey.duration:g} s over {journey.speed * journey.duration:g} m"),
+        ("time steps", f"{journey.samples} of {journey.time_step:g} s"),
+        ("frequencies", f"{grid.size} up to {0.5 / journey.time_step:g} Hz, {kept}"),
+        ("memory", f"about {memory / 2**20:.3g} MiB"),
+    ]

@@ -1,0 +1,218 @@
+"""Histories of prescribed forces: functions of time, in newton, positive down."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from movingfrf._basics.checks import FloatArray, checking, shown
+from movingfrf._basics.smooth import smooth_step
+
+# Sine waves that one force may be made of.
+MOST_WAVES = 100_000
+
+# A force over time [s] → [N].
+History = Callable[[FloatArray], FloatArray]
+
+
+def constant(
+    *, force: float, switch_on: float = 0.0, switch_off: float | None = None, ramp: float = 0.0
+) -> History:
+    """One constant force, switched on and off.
+
+    Parameters
+    ----------
+    force : float
+        Force [N].
+    switch_on : float
+        When it begins [s].
+    switch_off : float, optional
+        When it has ended [s]; None: never.
+    ramp : float
+        Time over which it rises and falls smoothly [s]; 0 switches abruptly.
+
+    Returns
+    -------
+    callable
+        Force [N] at an array of times [s].
+
+    Raises
+    ------
+    ValueError
+        If a time is negative or they are out of order.
+    """
+    with checking() as check:
+        check.finite("force", force, "N")
+    return _switched(lambda time: np.full_like(time, force), switch_on, switch_off, ramp)
+
+
+def harmonics(
+    *,
+    amplitudes: Sequence[float],
+    frequencies: Sequence[float],
+    phases: Sequence[float] | None = None,
+    mean: float = 0.0,
+    switch_on: float = 0.0,
+    switch_off: float | None = None,
+    ramp: float = 0.0,
+) -> History:
+    """Sum sine waves on a mean, switched on and off.
+
+    Parameters
+    ----------
+    amplitudes : sequence of float
+        Amplitudes [N].
+    frequencies : sequence of float
+        Frequencies [Hz], one per amplitude.
+    phases : sequence of float, optional
+        Phases at t = 0 [rad]; zero by default.
+    mean : float
+        Constant part [N].
+    switch_on, switch_off, ramp : float
+        As for `constant` [s].
+
+    Returns
+    -------
+    callable
+        Force [N] at an array of times [s].
+
+    Raises
+    ------
+    ValueError
+        If the lists differ in length, or a time is negative or out of order.
+    """
+    with checking() as check:
+        size = check.array("amplitudes", amplitudes, "N", (None,))
+        at = check.array("frequencies", frequencies, "Hz", (size.size,))
+        phase = np.zeros(size.size) if phases is None else check.array("phases", phases, "rad", (size.size,))
+        check.finite("mean", mean, "N")
+
+    def sum_of_sines(time: FloatArray) -> FloatArray:
+        total = np.full_like(time, mean)
+        for amplitude, frequency, shift in zip(size, at, phase, strict=True):
+            total += amplitude * np.sin(2 * np.pi * frequency * time + shift)
+        return total
+
+    return _switched(sum_of_sines, switch_on, switch_off, ramp)
+
+
+def random_sum(
+    *,
+    rms: float,
+    lowest: float,
+    highest: float,
+    count: int = 50,
+    seed: int = 0,
+    mean: float = 0.0,
+    switch_on: float = 0.0,
+    switch_off: float | None = None,
+    ramp: float = 0.0,
+) -> History:
+    """Sum equal sine waves with seeded, random frequencies and phases, on a mean.
+
+    Parameters
+    ----------
+    rms : float
+        Root mean square of the fluctuation [N].
+    lowest, highest : float
+        Band in which the frequencies lie, uniformly distributed [Hz].
+    count : int
+        Number of sine waves, at most 100,000.
+    seed : int
+        Seed: the same seed gives the same force.
+    mean : float
+        Constant part [N].
+    switch_on, switch_off, ramp : float
+        As for `constant` [s].
+
+    Returns
+    -------
+    callable
+        Force [N] at an array of times [s].
+
+    Raises
+    ------
+    ValueError
+        If the band is empty, a number is not positive, or a time is negative or out of order.
+    """
+    with checking() as check:
+        check.positive("rms", rms, "N")
+        check.not_negative("lowest", lowest, "Hz")
+        check.positive("highest", highest, "Hz")
+        if check.whole("count", count, least=1) > MOST_WAVES:
+            check.refuse("count", f"must be at most {MOST_WAVES}, got {shown(count)}")
+        check.whole("seed", seed)
+        if not check.faults and lowest >= highest:
+            check.refuse("highest", f"must be above lowest, {lowest:g} Hz, got {highest:g} Hz")
+    random = np.random.default_rng(seed)
+    return harmonics(
+        amplitudes=np.full(count, rms * np.sqrt(2 / count)).tolist(),
+        frequencies=random.uniform(lowest, highest, count).tolist(),
+        phases=random.uniform(0, 2 * np.pi, count).tolist(),
+        mean=mean,
+        switch_on=switch_on,
+        switch_off=switch_off,
+        ramp=ramp,
+    )
+
+
+def tabulated(*, file: Path, column: int = 1) -> History:
+    """Read a force from a file of columns: time [s], then one force per column [N].
+
+    Between the rows the force is a cubic spline; before the first and after the last row it is zero.
+
+    Parameters
+    ----------
+    file : Path
+        The file: columns separated by commas, semicolons, tabs or spaces.
+    column : int
+        Number of the force's column; the time is column 0.
+
+    Returns
+    -------
+    callable
+        Force [N] at an array of times [s].
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, or lacks the column.
+    """
+    from scipy.interpolate import CubicSpline
+
+    from movingfrf.roughness.formats.columns import read_numbers
+
+    table = read_numbers(file)
+    time, forces = table[:, 0], table[:, 1:]
+    with checking() as check:
+        if len(time) < 4 or (np.diff(time) <= 0).any():
+            check.refuse("file", f"must hold at least 4 rows of increasing time [s], {file} does not")
+        check.whole("column", column, least=1)
+        if not check.faults and column > forces.shape[1]:
+            check.refuse("column", f"must be at most {forces.shape[1]}, the columns of {file}, got {column}")
+    spline = CubicSpline(time, forces[:, column - 1])
+    return lambda at: np.where((at >= time[0]) & (at <= time[-1]), spline(at), 0.0)
+
+
+def _switched(history: History, on: float, off: float | None, ramp: float) -> History:
+    """Let a history act from `on` to `off` only."""
+    with checking() as check:
+        on = check.not_negative("switch_on", on, "s")
+        ramp = check.not_negative("ramp", ramp, "s")
+        if off is not None:
+            off = check.finite("switch_off", off, "s")
+            if off < on + 2 * ramp:
+                check.refuse("switch_off", f"must leave time for both ramps after switch_on, got {off!r} s")
+
+    def switched(time: FloatArray) -> FloatArray:
+        if ramp:
+            share = smooth_step((time - on) / ramp)
+            if off is not None:
+                share = share * smooth_step((off - time) / ramp)
+        else:
+            share = np.where((time >= on) & (time < (np.inf if off is None else off)), 1.0, 0.0)
+        return history(time) * share
+
+    return switched

@@ -1,0 +1,540 @@
+"""A vehicle and a finite road, stepped in time: as one system (CDFM), or side by side (SIM)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import movingfrf.results.findings as find
+from movingfrf._basics.checks import FloatArray, SolveError, checking, require_memory
+from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.version import VERSION
+from movingfrf.results.labels import COUPLED, labelled
+from movingfrf.roughness.excitation import Excitation, excite
+from movingfrf.roughness.profile import Profile
+from movingfrf.stepping.finite_guideway import FiniteGuideway
+from movingfrf.stepping.marching import SOLVED, Iteration, March, State, law_of, no_vehicle, stiffness_at_rest
+from movingfrf.stepping.requirements import (
+    require_across,
+    require_apart,
+    require_kinds,
+    require_on_road,
+    require_slopes,
+    require_stable_scheme,
+)
+from movingfrf.stepping.schemes import Scheme, scheme_named
+from movingfrf.vehicles.journey import Journey
+from movingfrf.vehicles.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# A smooth run before the record needs no more rounds than this to agree with the loads it brings about.
+MOST_ROUNDS = 5
+
+# Contact forces that differ by no more than this share agree.
+AGREED = 1e-9
+
+# Change of the steady deflection, from one element to the next, at which the run-in was too short.
+UNSETTLED = 1e-3
+
+# A vehicle whose contacts move as a rigid body allows is not held by the road: relative stiffness that is rounding.
+ROUNDING = 1e-9
+
+
+class Steady(NamedTuple):
+    """Steady travel on the smooth road."""
+
+    load: FloatArray  # (contact,) [N]
+    deflection: FloatArray  # (contact,) [m]
+    motion: FloatArray  # (dof,) about the vehicle at rest on a rigid road
+    findings: list[find.Finding]
+
+
+def cdfm(
+    road: FiniteGuideway,
+    vehicle: Vehicle,
+    profile: Profile,
+    *,
+    speed: float,
+    duration: float,
+    start: float = 0.0,
+    time_step: float = 1e-3,
+    blend: float = 5.0,
+    superposed: bool = False,
+    run_in: float = 1.0,
+    observe: ArrayLike = (),
+    scheme: str | Scheme = "average_acceleration",
+    compiled: bool | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Drive a vehicle over a finite road, both stepped as one system: the coupled method (CDFM).
+
+    Every contact ties the vehicle to the road by a spring and a dashpot at a place that changes from step to step,
+    F = k (z − w + r) + c (ż − ẇ − v ∂w/∂x + ṙ). What does not change is factorised once; the contact forces of a
+    step follow from a system as small as their number.
+
+    Parameters
+    ----------
+    road : FiniteGuideway
+        The road, long enough for the journey and the run-in; see `finite_track`.
+    vehicle : Vehicle
+        The vehicle.
+    profile : Profile
+        Elevation of the road; must cover the journey of every contact.
+    speed : float
+        Speed [m/s].
+    duration : float
+        Duration [s].
+    start : float
+        Distance of the vehicle's reference point at t = 0 [m].
+    time_step : float
+        Step in time [s].
+    blend : float
+        Length over which the profile sets in [m]; 0 leaves it as it is.
+    superposed : bool
+        Whether the road carries the vehicle's weight in a run of its own, the run-in, and only what the roughness
+        adds is stepped afterwards. Right on a road that is the same everywhere, and then more accurate; a bridge
+        needs False.
+    run_in : float
+        Time for which the vehicle's weight travels along the smooth road before the record begins [s], from a road
+        at rest under it; 0 begins with that state.
+    observe : array_like, shape (place,)
+        Points of the road's centre line, standing still, whose deflection is recorded too [m]: mid-span of a
+        bridge. Not with `superposed`, whose steady part is known under the contacts only.
+    scheme : str or Scheme
+        Time-stepping scheme, by name or as the row of its numbers.
+    compiled : bool, optional
+        Whether to use the compiled loops; None: where they apply and numba is installed.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the variables of a result of `simulate`, and `place_deflection` (time, place) [m] if asked for.
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible, the vehicle would leave the road, contacts stand closer than the road's nodes, the
+        scheme is unstable, the profile does not cover the journey, or memory does not hold the result.
+    SolveError
+        If the road's matrices are inconsistent or a result is not finite.
+
+    Warns
+    -----
+    ValidityWarning
+        If contact would be lost.
+
+    References
+    ----------
+    W. Zhai, Z. Han, Z. Chen, L. Ling, S. Zhu, Train–track–bridge dynamic interaction, Vehicle Syst. Dyn. 57, 2019.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> track = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9),
+    ...                  mf.Spring(stiffness=8.0e6, damping=3.0e4))
+    >>> car = mf.quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                      suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> hump = mf.bump(height=0.02, width=1.0, at=1.0, length=10.0)
+    >>> road = mf.finite_track(track, first=-25.0, last=25.0, element=0.5)
+    >>> result = cdfm(road, car, hump, speed=10.0, duration=0.5, blend=0.0, run_in=0.2)
+    >>> dict(result.sizes)
+    {'time': 500, 'contact': 1, 'dof': 2}
+    """
+    return prepared(
+        Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend),
+        (road, vehicle, profile),
+        scheme=scheme,
+        superposed=superposed,
+        run_in=run_in,
+        observe=observe,
+        compiled=compiled,
+        progress=progress,
+    )()
+
+
+def sim(
+    road: FiniteGuideway,
+    vehicle: Vehicle,
+    profile: Profile,
+    *,
+    speed: float,
+    duration: float,
+    start: float = 0.0,
+    time_step: float = 1e-3,
+    blend: float = 5.0,
+    superposed: bool = False,
+    run_in: float = 1.0,
+    observe: ArrayLike = (),
+    scheme: str | Scheme = "average_acceleration",
+    tolerance: float = 1e-10,
+    iterations: int = 50,
+    compiled: bool | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Drive a vehicle over a finite road, each stepped on its own: the separate iterative method (SIM).
+
+    Within each step road and vehicle exchange contact forces until these agree. The road's answer to a contact
+    force of the step is known before, so that an exchange costs next to nothing and the road is solved once a step.
+
+    Parameters
+    ----------
+    road : FiniteGuideway
+        The road, long enough for the journey and the run-in; see `finite_track`.
+    vehicle : Vehicle
+        The vehicle.
+    profile : Profile
+        Elevation of the road; must cover the journey of every contact.
+    speed : float
+        Speed [m/s].
+    duration : float
+        Duration [s].
+    start : float
+        Distance of the vehicle's reference point at t = 0 [m].
+    time_step : float
+        Step in time [s].
+    blend : float
+        Length over which the profile sets in [m]; 0 leaves it as it is.
+    superposed : bool
+        As for `cdfm`.
+    run_in : float
+        As for `cdfm` [s].
+    observe : array_like, shape (place,)
+        As for `cdfm` [m].
+    scheme : str or Scheme
+        Time-stepping scheme, by name or as the row of its numbers.
+    tolerance : float
+        Relative change of the contact forces at which they agree, a ratio.
+    iterations : int
+        Number of exchanges in a step after which the method gives up.
+    compiled : bool, optional
+        Whether to use the compiled loops; None: where they apply and numba is installed.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the variables of a result of `simulate`; the attribute `iterations` is the most that a step took.
+
+    Raises
+    ------
+    ValueError
+        As for `cdfm`, or if the tolerance is not positive.
+    SolveError
+        If the forces of a step do not come to agree, or as for `cdfm`.
+
+    Warns
+    -----
+    ValidityWarning
+        If contact would be lost.
+
+    References
+    ----------
+    C. G. Krishnanunni, B. N. Rao, Decoupled technique for dynamic response of vehicle–pavement systems, Eng.
+    Struct. 191, 2019.
+    """
+    with checking() as check:
+        check.positive("tolerance", tolerance, "1")
+        check.whole("iterations", iterations, least=1)
+    return prepared(
+        Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend),
+        (road, vehicle, profile),
+        scheme=scheme,
+        iteration=Iteration(tolerance, iterations),
+        superposed=superposed,
+        run_in=run_in,
+        observe=observe,
+        compiled=compiled,
+        progress=progress,
+    )()
+
+
+def prepared(
+    journey: Journey,
+    parts: tuple[FiniteGuideway, Vehicle, Profile],
+    *,
+    scheme: str | Scheme = "average_acceleration",
+    iteration: Iteration = SOLVED,
+    superposed: bool = False,
+    run_in: float = 1.0,
+    observe: ArrayLike = (),
+    compiled: bool | None = None,
+    progress: Progress = silent,
+) -> Callable[[], xr.Dataset]:
+    """Check and prepare a journey: everything that comes before its first step.
+
+    Parameters
+    ----------
+    journey : Journey
+        How the vehicle travels.
+    parts : tuple of FiniteGuideway, Vehicle and Profile
+        Who travels on what.
+    scheme, superposed, run_in, observe, compiled, progress
+        As for `cdfm`.
+    iteration : Iteration
+        How contact forces are found in each step.
+
+    Returns
+    -------
+    callable
+        Steps through the journey and returns the result of `cdfm` or `sim`.
+    """
+    road, vehicle, profile = parts
+    with checking() as check:
+        require_kinds(check, road=(road, FiniteGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile))
+    with checking() as check:
+        check.not_negative("run_in", run_in, "s")
+        row = scheme_named(check, scheme)
+        places = check.array("observe", observe, "m", (None,))
+        if places.size and (superposed or road.travels):
+            check.refuse("observe", "must be empty on a road that travels along and where the weight is superposed")
+    with checking() as check:
+        if places.size and not road.interval[0] <= places.min() <= places.max() <= road.interval[1]:
+            check.refuse(
+                "observe",
+                f"must lie on the road, {road.interval[0]:.6g} m to {road.interval[1]:.6g} m, got "
+                f"{places.tolist()} m",
+            )
+        positions = journey.start * (not road.travels) + vehicle.positions
+        before, after = -journey.speed * run_in, journey.speed * journey.time_step * journey.samples
+        # A road that travels along follows element by element.
+        require_on_road(check, road, positions, (0.0, road.spacing) if road.travels else (before, after))
+        require_across(check, road, vehicle.across)
+        require_apart(check, road, positions)
+        if any(contact.damping for contact in vehicle.contacts):
+            require_slopes(check, road)
+        require_stable_scheme(check, road, row, journey.time_step, vehicle)
+    channels = 5 * len(vehicle.contacts) + 2 * len(vehicle.dof_names)
+    require_memory(8.0 * channels * journey.samples, f"{journey.samples} steps of {journey.time_step:g} s")
+    march = March(
+        road=road,
+        scheme=row,
+        time_step=journey.time_step,
+        speed=journey.speed,
+        contacts=positions,
+        contacts_across=vehicle.across,
+        observers=places,
+        observers_travel=False,
+        law=law_of(vehicle),
+        iteration=iteration,
+        compiled=compiled,
+    )
+    excitation = seen_in_time(profile, vehicle, journey)
+    run_in_steps = round(run_in / journey.time_step)
+    steady, state = steady_travel(march, vehicle, run_in_steps, progress)
+    loads = np.zeros((1, positions.size)) if superposed else vehicle.static_loads[None]
+    state = march.at_rest() if superposed else state
+    roughness, rate = excitation.roughness, excitation.rate
+    assert rate is not None
+    march.begun(state, roughness[0], rate[0], loads[0])
+    march.prepare()
+
+    def step() -> xr.Dataset:
+        record = march.run(
+            journey.samples - 1, state.copied(), roughness=roughness, rate=rate, loads=loads, progress=progress
+        )
+        force, deflection, motion = record.force, record.deflection, record.motion
+        if superposed:
+            deflection += steady.deflection
+        else:
+            force += vehicle.static_loads - steady.load
+            motion -= steady.motion
+        name = "separate iterative method (SIM)" if iteration.tolerance else "coupled method (CDFM)"
+        attributes: dict[str, str | float | int] = {
+            "title": f"Coupled response of a vehicle and a finite road: {name}",
+            "movingfrf": VERSION,
+            "speed": float(journey.speed),
+            "duration": float(journey.duration),
+            "start": float(journey.start),
+            "time_step": float(journey.time_step),
+            "blend": float(journey.blend),
+            "datum": excitation.datum,
+            "scheme": repr(row),
+            "road_dofs": road.dofs,
+            "road_spacing": float(road.spacing),
+            "iterations": record.iterations,
+            "findings": find.announced(
+                [*steady.findings, *find.contact_lost(force + steady.load, journey.time_step)]
+            ),
+        }
+        values = {
+            "contact_force": force,
+            "static_load": steady.load,
+            "deflection": deflection,
+            "static_deflection": steady.deflection,
+            "motion": motion,
+            "acceleration": record.acceleration,
+            "roughness": excitation.roughness,
+        }
+        if places.size:
+            values |= {"place": places, "place_deflection": record.observed}
+        return labelled({**journey.coordinates(vehicle), **values}, COUPLED, attributes)
+
+    return step
+
+
+def seen_in_time(profile: Profile, vehicle: Vehicle, journey: Journey) -> Excitation:
+    """Elevation under each contact and its rate, averaged over the contact's footprint.
+
+    Parameters
+    ----------
+    profile : Profile
+        The road's surface.
+    vehicle : Vehicle
+        The vehicle.
+    journey : Journey
+        How it travels.
+
+    Returns
+    -------
+    Excitation
+        Roughness [m] and its rate of change [m/s], shape (time, contact).
+    """
+    excitation = excite(
+        profile,
+        vehicle.positions,
+        [contact.path for contact in vehicle.contacts],
+        speed=journey.speed,
+        samples=journey.samples,
+        time_step=journey.time_step,
+        start=journey.start,
+        blend=journey.blend,
+        rate=True,
+    )
+    roughness, rate = excitation.roughness, excitation.rate
+    assert rate is not None
+    passing = np.array([contact.footprint for contact in vehicle.contacts]) / journey.speed
+    if passing.any():
+        roughness, rate = _averaged(roughness, rate, passing, journey.time_step)
+    return Excitation(np.ascontiguousarray(roughness), excitation.datum, np.ascontiguousarray(rate))
+
+
+def _averaged(
+    roughness: FloatArray, rate: FloatArray, passing: FloatArray, time_step: float
+) -> tuple[FloatArray, FloatArray]:
+    """Average a record over the time that a footprint takes to pass; it is zero before its start."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    roughness, rate = roughness.copy(), rate.copy()
+    time = time_step * np.arange(len(roughness))
+    for contact in np.flatnonzero(passing):
+        spline = CubicHermiteSpline(time, roughness[:, contact].copy(), rate[:, contact])
+        area = spline.antiderivative()
+        half = 0.5 * passing[contact]
+        behind, ahead = np.clip(time - half, 0.0, None), np.clip(time + half, None, time[-1])
+        # Behind its start a record is zero, past its end it keeps its last value.
+        late = np.maximum(time + half - time[-1], 0.0) * spline(time[-1])
+        first = np.where(time >= half, spline(behind), 0.0)
+        roughness[:, contact] = (area(ahead) - area(behind) + late) / passing[contact]
+        rate[:, contact] = (spline(ahead) - first) / passing[contact]
+    return roughness, rate
+
+
+def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress) -> tuple[Steady, State]:
+    """Let the weights alone travel along the smooth road, from rest, and see what they settle to.
+
+    Parameters
+    ----------
+    march : March
+        The road, and where contacts start.
+    vehicle : Vehicle
+        The vehicle; where the sag of the road redistributes its weight the run is repeated with what it found.
+    steps : int
+        Steps of the run; 0: at rest.
+    progress : callable
+        As everywhere.
+
+    Returns
+    -------
+    Steady
+        Contact forces and deflections, averaged over the passage of one element, and the vehicle's motion on them.
+    State
+        Road and vehicle at the end of the run.
+    """
+    held = stiffness_at_rest(march.law)
+    held = np.where(np.abs(held) < ROUNDING * np.abs(march.law.springs).max(), 0.0, held)
+    sags = _sags(march, -steps)
+    yields = march.road.rows(march.places(-steps), 0, march.contacts_across) @ sags
+    load = np.linalg.solve(np.eye(len(held)) + held @ yields, vehicle.static_loads)
+    deflection = yields @ load
+    alone = replace(march, law=no_vehicle(march.contacts.size), iteration=SOLVED, observers=np.empty(0))
+    nothing = np.zeros((steps + 1, march.contacts.size))
+    findings: list[find.Finding] = []
+    for _ in range(MOST_ROUNDS if steps else 1):
+        state = alone.at_rest(-steps)
+        state.road[0] = sags @ load
+        state.acting[:] = load
+        if not steps:
+            break
+        record = alone.run(
+            steps,
+            state,
+            roughness=nothing,
+            rate=nothing,
+            loads=load[None],
+            origin=-steps,
+            stage="run-in",
+            progress=progress,
+        )
+        passage = _passage(march, steps)
+        deflection = record.deflection[-passage:].mean(axis=0)
+        findings = _settling(record.deflection, passage, march.time_step)
+        missing = vehicle.static_loads - held @ deflection - load
+        if np.abs(missing).max() <= AGREED * np.abs(load).max():
+            break
+        # In travel the road yields nearly as it does at rest.
+        load = load + np.linalg.solve(np.eye(len(held)) + held @ yields, missing)
+    else:
+        raise SolveError(
+            f"the vehicle's weight and the sag of the road under it do not come to agree in steady travel at "
+            f"{march.speed:g} m/s"
+        )
+    law = march.law
+    motion = np.linalg.solve(vehicle.held_stiffness, law.contact_map.T @ (law.springs * deflection))
+    state.body = np.zeros((3, motion.size))
+    state.body[0] = motion
+    return Steady(load, deflection, motion, findings), state
+
+
+def _sags(march: March, step: int) -> FloatArray:
+    """Displacement of the road at rest per force at each contact, shape (road dof, contact)."""
+    from scipy.sparse.linalg import splu
+
+    try:
+        factor = splu(march.road.stiffness)
+    except RuntimeError:
+        raise SolveError("the road's stiffness matrix is singular: nothing holds the road up at rest") from None
+    return factor.solve(march.road.rows(march.places(step), 0, march.contacts_across).toarray().T)
+
+
+def _passage(march: March, most: int) -> int:
+    """Count the steps in which an element passes: between its nodes a mesh gives way a little more or less."""
+    steps = march.road.spacing / (march.speed * march.time_step)
+    return max(1, min(round(steps), most))
+
+
+def _settling(deflection: FloatArray, passage: int, time_step: float) -> list[find.Finding]:
+    """Compare the last two passages of an element."""
+    if len(deflection) <= 2 * passage:
+        return []
+    last, before = deflection[-passage:].mean(axis=0), deflection[-2 * passage : -passage].mean(axis=0)
+    # What is left shrinks from passage to passage; from one to the next it changes by about as much as is left.
+    change = float(np.abs(last - before).max() / np.abs(last).max())
+    if change <= UNSETTLED:
+        return []
+    return [
+        find.Finding(
+            "not_settled",
+            f"the deflection under the vehicle's weight still changes by {change:.1e} from one element to the next "
+            f"after a run-in of {time_step * (len(deflection) - 1):.3g} s; a longer run_in would let it settle",
+        )
+    ]

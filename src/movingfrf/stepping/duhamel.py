@@ -1,0 +1,354 @@
+"""Duhamel's integral with the moving impulse response, in the time domain."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import movingfrf.results.findings as find
+from movingfrf._basics.checks import FloatArray, checking, require_memory
+from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.version import VERSION
+from movingfrf.guideways.sampled import SampledGuideway
+from movingfrf.results.labels import COUPLED, LOADED, labelled
+from movingfrf.roughness.profile import Profile
+from movingfrf.stepping.coupled import seen_in_time
+from movingfrf.stepping.marching import STRIDE, Law, law_of, numba_is_there, stiffness_at_rest
+from movingfrf.stepping.requirements import require_kinds
+from movingfrf.stepping.schemes import SCHEMES
+from movingfrf.vehicles.journey import Journey
+from movingfrf.vehicles.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# Two steps whose ratio differs by less than this from a whole number fit each other.
+FITTING = 1e-6
+
+# What a moving impulse response has faded to where the integral may end, relative to its largest value.
+FADED = 1e-9
+
+
+def duhamel(
+    road: SampledGuideway,
+    vehicle: Vehicle,
+    profile: Profile,
+    *,
+    speed: float,
+    duration: float,
+    start: float = 0.0,
+    time_step: float = 1e-3,
+    blend: float = 5.0,
+    compiled: bool | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Drive a vehicle over a road that is known by its moving impulse response.
+
+    The road deflects by Duhamel's integral over all earlier contact forces, the vehicle is stepped by Newmark's
+    method, and the contact forces of a step are solved for within it. Contact forces are linear between steps.
+
+    Parameters
+    ----------
+    road : SampledGuideway
+        Moving impulse response between all contacts; see `moving_impulse_response`.
+    vehicle : Vehicle
+        The vehicle.
+    profile : Profile
+        Elevation of the road; must cover the journey of every contact.
+    speed : float
+        Speed [m/s]; the one at which the response was recorded.
+    duration : float
+        Duration [s].
+    start : float
+        Distance of the vehicle's reference point at t = 0 [m].
+    time_step : float
+        Step in time [s], a whole multiple of the response's.
+    blend : float
+        Length over which the profile sets in [m]; 0 leaves it as it is.
+    compiled : bool, optional
+        Whether to use the compiled loop; None: where numba is installed.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the variables of a result of `simulate`.
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible, speed or distances were not recorded, the steps do not fit, or the profile does
+        not cover the journey.
+
+    Warns
+    -----
+    ValidityWarning
+        If contact would be lost.
+    """
+    journey = Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend)
+    with checking() as check:
+        require_kinds(check, road=(road, SampledGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile))
+    road.require_speed(speed)
+    positions = vehicle.positions
+    columns = road.columns(**vehicle.offsets)
+    whole, _, earlier = weights(road, time_step)
+    channels = 5 * positions.size + 2 * len(vehicle.dof_names)
+    require_memory(8.0 * channels * journey.samples, f"{journey.samples} steps of {time_step:g} s")
+    excitation = seen_in_time(profile, vehicle, journey)
+    assert excitation.rate is not None
+    yields = road.moving_frf(speed=speed, omega=[0.0], **vehicle.offsets)[0].real
+    law = law_of(vehicle)
+    held = stiffness_at_rest(law)
+    load = np.linalg.solve(np.eye(positions.size) + held @ yields, vehicle.static_loads)
+    steady = yields @ load
+    samples = journey.samples
+    record = [
+        np.zeros((width, samples)) for width in (positions.size, positions.size, len(law.mass), len(law.mass))
+    ]
+    # (receiver, source, time): newest force last, as the forces stand in their record.
+    kernel = np.ascontiguousarray(whole.T[columns])
+    backwards = np.ascontiguousarray(kernel[:, :, :0:-1])
+    advance = _compiled() if (numba_is_there() if compiled is None else compiled) else _plain
+    state = np.zeros((3, len(law.mass)))
+    # The road's elevation may begin with a jump: forces act from t = 0 on, the first one by half of its hat.
+    first = law.springs * excitation.roughness[0] + law.dashpots * excitation.rate[0]
+    state[2] = -np.linalg.solve(law.mass, law.contact_map.T @ first)
+    begun = np.einsum("tij,j->it", earlier[:, columns], first)
+    vehicle_inverse = np.linalg.inv(law.mass + _lift(law, time_step))
+    for begin in range(0, samples - 1, STRIDE):
+        end = min(begin + STRIDE, samples - 1)
+        advance(
+            time_step,
+            kernel[:, :, 0].copy(),
+            backwards,
+            np.ascontiguousarray(begun),
+            vehicle_inverse,
+            *law[1:],
+            excitation.roughness,
+            excitation.rate,
+            state,
+            begin,
+            end,
+            *record,
+        )
+        progress("convolving", end / (samples - 1))
+    record[0][:, 0], record[3][:, 0] = first, -np.linalg.solve(law.mass, law.contact_map.T @ first)
+    force, deflection, motion, acceleration = (values.T for values in record)
+    values = {
+        **journey.coordinates(vehicle),
+        "contact_force": force,
+        "static_load": load,
+        "deflection": deflection + steady,
+        "static_deflection": steady,
+        "motion": motion,
+        "acceleration": acceleration,
+        "roughness": excitation.roughness,
+    }
+    attributes: dict[str, str | float | int] = {
+        "title": "Coupled response of a vehicle and a guideway: Duhamel's integral",
+        "movingfrf": VERSION,
+        "speed": float(speed),
+        "duration": float(duration),
+        "start": float(start),
+        "time_step": float(time_step),
+        "blend": float(blend),
+        "datum": excitation.datum,
+        "critical_speed": float(road.critical_speed),
+        "findings": find.announced(find.contact_lost(force + load, time_step)),
+    }
+    return labelled(values, COUPLED, attributes)
+
+
+def duhamel_loads(
+    road: SampledGuideway,
+    force: ArrayLike,
+    positions: ArrayLike,
+    *,
+    speed: float,
+    time_step: float = 1e-3,
+    observe: ArrayLike | None = None,
+) -> xr.Dataset:
+    """Deflection under prescribed forces that travel along, by Duhamel's integral, from rest at t = 0.
+
+    Parameters
+    ----------
+    road : SampledGuideway
+        Moving impulse response from all loads to all observers.
+    force : array_like, shape (time, load)
+        Forces [N], positive down, linear between samples.
+    positions : array_like, shape (load,)
+        Where the forces act, ahead of the frame that travels with them [m].
+    speed : float
+        Common speed [m/s]; the one at which the response was recorded.
+    time_step : float
+        Step in time [s], a whole multiple of the response's.
+    observe : array_like, shape (point,), optional
+        Observation points in the same frame [m]; the loads' own by default.
+
+    Returns
+    -------
+    xarray.Dataset
+        `deflection` (time, point) [m] and `force` (time, load) [N].
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible, speed or distances were not recorded, or the steps do not fit.
+
+    Examples
+    --------
+    >>> time = 1e-3 * np.arange(2000)
+    >>> ringing = 1e-6 * np.exp(-10 * time)[:, None]
+    >>> road = SampledGuideway(response=ringing, time_step=1e-3, offsets=[0.0], speed=10.0)
+    >>> result = duhamel_loads(road, np.full((1500, 1), 1e5), [0.0], speed=10.0)
+    >>> round(1e3 * result.deflection[-1, 0].item(), 3)  # mm
+    10.0
+    """
+    with checking() as check:
+        at = check.array("positions", positions, "m", (None,))
+        forces = check.array("force", force, "N", (None, at.size))
+        points = at if observe is None else check.array("observe", observe, "m", (None,))
+        if not check.faults and (len(forces) < 2 or not at.size or not points.size):
+            check.refuse("force", "must have at least two samples, one load and one observation point")
+    with checking() as check:
+        require_kinds(check, road=(road, SampledGuideway))
+    road.require_speed(speed)
+    columns = road.columns(points[:, None] - at)
+    whole, _, first = weights(road, time_step)
+    deflection = np.zeros((len(forces), points.size))
+    for point, row in enumerate(columns):
+        for load, column in enumerate(row):
+            history = forces[:, load].copy()
+            # The first force begins at t = 0: of its hat only the half that lies behind that.
+            early = min(len(forces), len(first))
+            deflection[:early, point] += history[0] * first[:early, column]
+            history[0] = 0.0
+            deflection[:, point] += np.convolve(history, whole[:, column])[: len(forces)]
+    values = {
+        "time": time_step * np.arange(len(forces)),
+        "load": at,
+        "point": points,
+        "force": forces,
+        "deflection": deflection,
+    }
+    attributes: dict[str, str | float | int] = {
+        "title": "Response of a guideway to prescribed moving loads: Duhamel's integral",
+        "movingfrf": VERSION,
+        "speed": float(speed),
+        "time_step": float(time_step),
+        "critical_speed": float(road.critical_speed),
+        "findings": "[]",
+    }
+    return labelled(values, LOADED, attributes)
+
+
+def weights(road: SampledGuideway, time_step: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Integrals of the impulse response times the hat around each step, and times its two halves.
+
+    Parameters
+    ----------
+    road : SampledGuideway
+        The moving impulse response, until it has faded.
+    time_step : float
+        Step [s], a whole multiple of the response's.
+
+    Returns
+    -------
+    whole, later, earlier : ndarray, shape (step, offset)
+        Deflection per force [m/N]: whole hats, and the halves after and before the step.
+
+    Raises
+    ------
+    ValueError
+        If the step is not a whole multiple of the response's.
+    """
+    ratio = time_step / road.time_step
+    count = round(ratio)
+    if count < 1 or abs(ratio - count) > FITTING:
+        raise ValueError(
+            f"time_step must be a whole multiple of {road.time_step!r} s, the step of the impulse response, "
+            f"got {time_step!r} s"
+        )
+    samples = road.samples
+    size = np.abs(samples).max(axis=1)
+    needed = int(np.flatnonzero(size > FADED * size.max())[-1]) + 1 if size.any() else 1
+    steps = -(-needed // count) + 1
+    padded = np.zeros((steps * count + 1, samples.shape[1]))
+    kept = min(len(samples), len(padded))
+    padded[:kept] = samples[:kept]
+    share = np.arange(count + 1) / count
+    trapezoid = np.full(count + 1, road.time_step)
+    trapezoid[[0, -1]] *= 0.5
+    pieces = np.lib.stride_tricks.sliding_window_view(padded, count + 1, axis=0)[::count]
+    later, earlier = np.zeros((2, steps + 1, samples.shape[1]))
+    later[:-1] = pieces @ (trapezoid * (1 - share))
+    earlier[1:] = pieces @ (trapezoid * share)
+    return later + earlier, later, earlier
+
+
+def _lift(law: Law, time_step: float) -> FloatArray:
+    beta, gamma, _, _ = SCHEMES["average_acceleration"]
+    return gamma * time_step * law.damping + beta * time_step**2 * law.stiffness
+
+
+def _plain(
+    dt: float,
+    now: FloatArray,
+    backwards: FloatArray,
+    begun: FloatArray,
+    vehicle_inverse: FloatArray,
+    vehicle_damping: FloatArray,
+    vehicle_stiffness: FloatArray,
+    contact_map: FloatArray,
+    springs: FloatArray,
+    dashpots: FloatArray,
+    roughness: FloatArray,
+    rate: FloatArray,
+    state: FloatArray,
+    begin: int,
+    end: int,
+    force_out: FloatArray,
+    deflection_out: FloatArray,
+    motion_out: FloatArray,
+    acceleration_out: FloatArray,
+) -> None:
+    """Convolve and step from `begin` to `end`; forces and deflections are (contact, time)."""
+    z, dz, ddz = state
+    memory = backwards.shape[2]
+    lift_u, lift_v = 0.25 * dt * dt, 0.5 * dt
+    lifted = -vehicle_inverse @ contact_map.T
+    own = contact_map @ lifted
+    eye = np.eye(len(springs))
+    for step in range(begin + 1, end + 1):
+        past = min(step, memory)
+        seen = force_out[:, step - past : step]
+        known = np.einsum("ijm,jm->i", backwards[:, :, memory - past :], seen)
+        if step < begun.shape[1]:
+            known += begun[:, step]
+        # Velocity of the moving contact by backward differences; of second order once there are two steps behind.
+        a, b, c = (1.5, -2.0, 0.5) if step > 1 else (1.0, -1.0, 0.0)
+        older = b * deflection_out[:, step - 1] + c * deflection_out[:, max(step - 2, 0)]
+        free_z, free_dz = z + dt * dz + lift_u * ddz, dz + lift_v * ddz
+        free_ddz = -vehicle_inverse @ (vehicle_stiffness @ free_z + vehicle_damping @ free_dz)
+        gap = springs * (contact_map @ (free_z + lift_u * free_ddz) - known + roughness[step])
+        gap += dashpots * (contact_map @ (free_dz + lift_v * free_ddz) - (a * known + older) / dt + rate[step])
+        matrix = eye + springs[:, None] * (now - lift_u * own) + dashpots[:, None] * (a / dt * now - lift_v * own)
+        force = np.linalg.solve(matrix, gap)
+        ddz[:] = free_ddz + lifted @ force
+        z[:] = free_z + lift_u * ddz
+        dz[:] = free_dz + lift_v * ddz
+        force_out[:, step] = force
+        deflection_out[:, step] = known + now @ force
+        motion_out[:, step], acceleration_out[:, step] = z, ddz
+
+
+def _compiled() -> Callable[..., None]:
+    from movingfrf.stepping.compiled import convolve
+
+    loop: Callable[..., None] = convolve
+    return loop

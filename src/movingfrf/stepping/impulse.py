@@ -1,0 +1,401 @@
+"""The moving impulse response of a finite road: strike it, and travel along while it rings."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._basics.checks import FloatArray, ValidityWarning, checking, require_memory
+from movingfrf._basics.progress import Progress, silent
+from movingfrf.guideways.sampled import SampledGuideway
+from movingfrf.guideways.track import Track
+from movingfrf.stepping.finite_guideway import FiniteGuideway, finite_track
+from movingfrf.stepping.marching import March, no_vehicle
+from movingfrf.stepping.requirements import require_across, require_stable_scheme
+from movingfrf.stepping.schemes import Scheme, scheme_named
+
+# What is worth a word: what is left of the response at its end, of a wave that comes back from the ends of the road
+# (both relative to the largest), and the error of the step at the highest frequency of the band, (ω Δt)²/12.
+UNDECAYED, REFLECTED, STRETCHED = 1e-3, 1e-3, 1e-2
+
+# Share of a record that counts as its end, and of the road that counts as its ends.
+LATE, OUTER = 0.05, 0.1
+
+# A response is recorded in stretches of this length [s], until one stays below this share of the largest value.
+STRETCH, FADED = 0.1, 1e-6
+
+# Longest response that is recorded unless asked for [s].
+LONGEST = 4.0
+
+# Frequencies at which reflections are estimated, and points at each end of the road.
+FREQUENCIES, POINTS = 40, 8
+
+# Either of two ends at both.
+EITHER = (("pinned", "pinned"), ("pinned", "guided"), ("guided", "pinned"), ("guided", "guided"))
+
+
+class Recipe(NamedTuple):
+    """How to strike a track: its length and elements [m], the step [s], the scheme, and the ends of each road."""
+
+    length: float
+    element: float
+    time_step: float
+    scheme: str
+    ends: tuple[tuple[str, str], ...]
+
+
+# The paper's road; and one of the same length whose end reflections cancel. The latter damps vibrations of single
+# elements, which the impulse excites and average acceleration keeps alive.
+PAPER = Recipe(40.0, 0.5, 1e-3, "average_acceleration", (("pinned", "pinned"),))
+CANCELLING = Recipe(40.0, 0.25, 2.5e-4, "generalised_alpha", EITHER)
+
+
+def moving_impulse_response(
+    roads: FiniteGuideway | Sequence[FiniteGuideway],
+    *,
+    speed: float,
+    offsets: ArrayLike,
+    strike: float,
+    across: ArrayLike = 0.0,
+    strike_across: ArrayLike = 0.0,
+    duration: float | None = None,
+    time_step: float = 2.5e-4,
+    band: float = 70.0,
+    critical_speed: float = np.inf,
+    scheme: str | Scheme = "average_acceleration",
+    compiled: bool | None = None,
+    progress: Progress = silent,
+) -> SampledGuideway:
+    """Strike a finite road and record what points see that travel on from there.
+
+    The impulse gives the road the velocity M⁻¹ N(x)ᵀ; then it rings freely.
+
+    Parameters
+    ----------
+    roads : FiniteGuideway or sequence of FiniteGuideway
+        The road; of several the average is taken. Pinned and guided ends reflect every wave with opposite signs: in
+        the average of four roads with either at each end all cancels that has met an end an odd number of times
+        (W. D. Smith, J. Comput. Phys. 15, 1974).
+    speed : float
+        Speed of the points [m/s].
+    offsets : array_like, shape (offset,)
+        Where the points start, ahead of the impulse [m].
+    strike : float
+        Where the impulse strikes [m]; at a node a mesh is most accurate.
+    across, strike_across : array_like, broadcastable to (offset,)
+        On a road with a width: place of each point across, less that of the impulse, and the impulse's own, left of
+        the centre line [m]. The road is struck once at each place.
+    duration : float, optional
+        Length of the record [s]; None: until it has died away, as long as every point stays on the road and at
+        most 4 s.
+    time_step : float
+        Step of the record and of the stepping [s].
+    band : float
+        Highest frequency that the record shall hold [Hz].
+    critical_speed : float
+        Critical speed of the road [m/s], if it is known.
+    scheme : str or Scheme
+        Time-stepping scheme, by name or as the row of its numbers.
+    compiled : bool, optional
+        Whether to use the compiled loops; None: where they apply and numba is installed.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    SampledGuideway
+        A guideway that `simulate` and `moving_loads` accept like any other, at this speed and these offsets.
+
+    Raises
+    ------
+    ValueError
+        If the road is too short for speed and duration, the step too long for the band, or a value is impossible.
+    SolveError
+        If the road's matrices are inconsistent.
+
+    Warns
+    -----
+    ValidityWarning
+        If the response has not died away at the end, waves come back from the ends of the road, or the step is
+        long for the band.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> track = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9),
+    ...                  mf.Spring(stiffness=8.0e6, damping=3.0e4))
+    >>> road = mf.finite_track(track, first=-40.0, last=40.0, element=0.5)
+    >>> struck = moving_impulse_response(road, speed=10.0, offsets=[0.0], strike=0.0, time_step=5e-4, band=30.0)
+    >>> abs(struck.moving_frf(0.0, 10.0, [0.0]) / track.moving_frf(0.0, 10.0, [0.0])).round(2).tolist()
+    [1.0]
+    """
+    several = [roads] if isinstance(roads, FiniteGuideway) else list(roads)
+    with checking() as check:
+        at = check.array("offsets", offsets, "m", (None,))
+        beside, sources = (
+            check.array(name, np.full(at.shape, value) if np.ndim(value) == 0 else value, "m", at.shape)
+            for name, value in (("across", across), ("strike_across", strike_across))
+        )
+        for name, value, unit in (("speed", speed, "m/s"), ("strike", strike, "m")):
+            check.finite(name, value, unit)
+        check.positive("time_step", time_step, "s")
+        check.positive("band", band, "Hz")
+        if duration is not None:
+            check.positive("duration", duration, "s")
+        row = scheme_named(check, scheme)
+        if not several or not all(isinstance(road, FiniteGuideway) and not road.travels for road in several):
+            check.refuse("roads", "must be one or more roads that stand still")
+        if not check.faults and not at.size:
+            check.refuse("offsets", "must hold at least one offset [m]")
+        if not check.faults and band * time_step > 0.25:
+            check.refuse(
+                "time_step", f"must be at most {0.25 / band:.3g} s to hold {band:g} Hz, got {time_step!r} s"
+            )
+    first, last = max(road.interval[0] for road in several), min(road.interval[1] for road in several)
+    starts = strike + np.append(at, 0.0)
+    room = (last - starts.max() if speed > 0 else starts.min() - first) / abs(speed) if speed else np.inf
+    wide = any(road.width for road in several)
+    with checking() as check:
+        length = min(room, LONGEST) if duration is None else duration
+        if starts.min() < first or starts.max() > last or length > room * (1 + 1e-9) or length < 2 * time_step:
+            check.refuse(
+                "roads",
+                f"must be long enough: points that start from {starts.min():.6g} m to {starts.max():.6g} m at "
+                f"{speed:g} m/s stay on the road, {first:.6g} m to {last:.6g} m, for {max(room, 0.0):.4g} s"
+                + ("" if duration is None else f", not for the duration of {duration:g} s"),
+            )
+        if not wide and (beside.any() or sources.any()):
+            check.refuse("across", "and strike_across must be 0 m on a road whose section moves as one")
+        for road in several:
+            require_across(check, road, np.concatenate([sources, sources + beside]))
+            require_stable_scheme(check, road, row, time_step)
+    steps = int(length / time_step * (1 + 1e-12))
+    require_memory(
+        32.0 * steps * at.size * len(several), f"an impulse response of {length:g} s in steps of {time_step:g} s"
+    )
+    pieces: dict[float, FloatArray] = {}
+    for source in np.unique(sources).tolist():
+        seen = sources == source
+        blow = Blow(strike, source, speed, strike + at[seen], (sources + beside)[seen])
+        records: list[FloatArray] = []
+        for road in several:
+            # What the first road has forgotten the others need not remember.
+            fading = FADED if duration is None and not pieces and not records else 0.0
+            records.append(_ringing(road, row, time_step, blow, steps, compiled, progress, fading=fading))
+            steps = len(records[0]) - 1
+        pieces[source] = np.mean(records, axis=0)
+    response = np.empty((steps + 1, at.size))
+    for source, piece in pieces.items():
+        response[:, sources == source] = piece
+    found = [
+        *_undecayed(response, steps * time_step),
+        *_stretched(band, time_step),
+        *_reflected(several, row, time_step, strike, steps, band, compiled, progress),
+    ]
+    for message in found:
+        warnings.warn(message, ValidityWarning, stacklevel=2)
+    return SampledGuideway(
+        response=response,
+        time_step=time_step,
+        offsets=at,
+        speed=float(speed),
+        across=beside if wide else None,
+        source_across=sources if wide else None,
+        critical_speed=critical_speed,
+    )
+
+
+def struck_track(
+    track: Track,
+    *,
+    speed: float,
+    offsets: ArrayLike,
+    plain: bool = False,
+    time_step: float | None = None,
+    band: float = 70.0,
+    compiled: bool | None = None,
+    progress: Progress = silent,
+) -> SampledGuideway:
+    """Find the moving FRF of a track from a finite-element model of 40 m of it.
+
+    Parameters
+    ----------
+    track : Track
+        The track.
+    speed : float
+        Speed [m/s].
+    offsets : array_like, shape (offset,)
+        Receiver minus source [m].
+    plain : bool
+        Whether to do as the paper does: simply supported ends, elements of 0.5 m, steps of 1 ms. Otherwise four
+        roads whose end reflections cancel are averaged, with elements of 0.25 m and steps of 0.25 ms.
+    time_step : float, optional
+        Another step [s].
+    band : float
+        Highest frequency that is wanted [Hz].
+    compiled : bool, optional
+        Whether to use the compiled loops; None: where they apply and numba is installed.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    SampledGuideway
+        At this speed and these offsets.
+
+    Raises
+    ------
+    ValueError
+        If 40 m are too short, the elements do not suit the track, or a value is impossible.
+
+    Warns
+    -----
+    ValidityWarning
+        As `moving_impulse_response`.
+    """
+    recipe = PAPER if plain else CANCELLING
+    half = 0.5 * recipe.length
+    roads = [
+        finite_track(track, first=-half, last=half, element=recipe.element, ends=ends, band=band)
+        for ends in recipe.ends
+    ]
+    return moving_impulse_response(
+        roads,
+        speed=speed,
+        offsets=offsets,
+        strike=0.0,
+        time_step=recipe.time_step if time_step is None else time_step,
+        band=band,
+        critical_speed=track.critical_speed,
+        scheme=recipe.scheme,
+        compiled=compiled,
+        progress=progress,
+    )
+
+
+class Blow(NamedTuple):
+    """Where the road is struck, and the points that travel on from there and watch."""
+
+    at: float  # [m]
+    across: float  # [m]
+    speed: float  # [m/s]
+    points: FloatArray  # (point,) [m]
+    points_across: ArrayLike  # (point,) [m]
+
+
+def _ringing(
+    road: FiniteGuideway,
+    scheme: Scheme,
+    time_step: float,
+    blow: Blow,
+    steps: int,
+    compiled: bool | None,
+    progress: Progress,
+    *,
+    fading: float = 0.0,
+) -> FloatArray:
+    """Deflection at points that travel, after a unit impulse, shape (steps + 1, point); shorter if it dies away."""
+    march = March(
+        road=road,
+        scheme=scheme,
+        time_step=time_step,
+        speed=blow.speed,
+        contacts=np.empty(0),
+        observers=blow.points,
+        observers_across=blow.points_across,
+        law=no_vehicle(0),
+        compiled=compiled,
+    )
+    state = march.at_rest()
+    state.road[1] = march.mass_solver.solve(road.rows(np.array([blow.at]), 0, blow.across).toarray()[0])
+    march.released(state, np.zeros(road.dofs))
+    stretch = max(int(STRETCH / time_step), 1)
+    pieces: list[FloatArray] = [np.zeros((1, blow.points.size))]
+    done, largest = 0, 0.0
+    while done < steps:
+        count = min(stretch, steps - done)
+        nothing = np.zeros((count + 1, 0))
+        piece = march.run(
+            count,
+            state,
+            roughness=nothing,
+            rate=nothing,
+            loads=nothing[:1],
+            origin=done,
+            stage="impulse",
+            progress=progress,
+        ).observed[1:]
+        pieces.append(piece)
+        done += count
+        lately = float(np.abs(piece).max())
+        largest = max(largest, lately)
+        if lately <= fading * largest:
+            break
+    return np.concatenate(pieces)
+
+
+def _undecayed(response: FloatArray, length: float) -> list[str]:
+    size = np.abs(response).max()
+    left = float(np.abs(response[-max(1, int(LATE * len(response))) :]).max() / size) if size else 0.0
+    if left <= UNDECAYED:
+        return []
+    return [
+        f"the moving impulse response has not died away: after {length:.4g} s {left:.1e} of its largest value is "
+        "left; a longer road, or more damping, would let it"
+    ]
+
+
+def _stretched(band: float, time_step: float) -> list[str]:
+    error = (2 * np.pi * band * time_step) ** 2 / 12
+    if error <= STRETCHED:
+        return []
+    return [
+        f"the time step of {time_step:g} s is long for {band:g} Hz: vibrations there are slowed by {error:.1%}; "
+        f"{np.sqrt(12 * STRETCHED) / (2 * np.pi * band):.2g} s would do"
+    ]
+
+
+def _reflected(
+    roads: Sequence[FiniteGuideway],
+    scheme: Scheme,
+    time_step: float,
+    strike: float,
+    steps: int,
+    band: float,
+    compiled: bool | None,
+    progress: Progress,
+) -> list[str]:
+    """Estimate what comes back from the ends.
+
+    A wave that is e times as high at an end as where it began is e² times as high when it is back, e⁴ times when
+    it has been to both ends, e⁸ times when it has been there twice: what remains of one, two or four roads. What is
+    seen at an end holds the reflection as well; where the end reflects, the square of what passes half-way there
+    tells more.
+    """
+    road = roads[0]
+    first, last = road.interval
+    outer = OUTER * (last - first)
+    ends = np.concatenate([np.linspace(first, first + outer, POINTS), np.linspace(last - outer, last, POINTS)])
+    middles = 0.5 * (strike + np.array([first, last]))
+    points = np.concatenate([[strike], middles, ends])
+    # On the centre line, where no roll adds to what the blow itself brings about.
+    blow = Blow(strike, 0.0, 0.0, points, 0.0)
+    records = _ringing(road, scheme, time_step, blow, steps, compiled, progress)
+    numbers = np.arange(float(points.size))
+    omega = 2 * np.pi * np.linspace(0.0, band, FREQUENCIES)
+    at_rest = SampledGuideway(response=records, time_step=time_step, offsets=numbers, speed=0.0)
+    frf = np.abs(at_rest.moving_frf(numbers, 0.0, omega))
+    share = np.minimum(frf[:, 3:].max(axis=1), frf[:, 1:3].max(axis=1) ** 2 / frf[:, 0]) / frf[:, 0]
+    back = share ** (2 * len(roads)) * frf[:, 0] / frf[:, 0].max()
+    worst = int(back.argmax())
+    if back[worst] <= REFLECTED:
+        return []
+    return [
+        f"waves come back from the ends of the road: about {back[worst]:.1e} of the largest moving FRF, at "
+        f"{omega[worst] / (2 * np.pi):.3g} Hz; a longer road, absorbing ends, or the average of roads with pinned "
+        "and guided ends reflects less"
+    ]

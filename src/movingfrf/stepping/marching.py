@@ -1,0 +1,578 @@
+"""Marching through time: a finite road and, on it, a vehicle or prescribed forces.
+
+Every method of this package that steps a road uses `March`: it factorises what is constant once and then advances,
+compiled where numba is installed and the road is a chain of beam elements, in NumPy and LAPACK otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy.sparse as sparse
+from numpy.typing import ArrayLike
+
+from movingfrf._basics.checks import FloatArray, IntArray, SolveError
+from movingfrf._basics.progress import Progress, silent
+from movingfrf.stepping.factors import BandSolver, SparseSolver, bands_of, half_width, indefinite, solver
+from movingfrf.stepping.finite_guideway import SAME_PLACE, CubicRows, FiniteGuideway
+from movingfrf.stepping.schemes import Scheme
+from movingfrf.vehicles.vehicle import Vehicle
+
+# Steps between two looks at the keyboard, how many unknowns times steps that may be, and, in NumPy, how many
+# entries of interpolating rows, which are held for all these steps at once.
+STRIDE, WORK, ENTRIES = 20_000, 20_000_000, 1_000_000
+
+# Contact forces [N] that are nothing, and that are beyond all measure: the exchange of forces has run away.
+TINY, HUGE = 1e-9, 1e30
+
+# Unknowns that the compiled band solver needs at least.
+FEWEST = 9
+
+# Entries of the inverse below this share of its diagonal are zero to rounding.
+NEGLIGIBLE = 1e-17
+
+
+class Law(NamedTuple):
+    """What happens at the contacts: a vehicle on springs and dashpots, or nothing but prescribed forces."""
+
+    mass: FloatArray  # (dof, dof)
+    damping: FloatArray  # (dof, dof)
+    stiffness: FloatArray  # (dof, dof)
+    contact_map: FloatArray  # (contact, dof)
+    springs: FloatArray  # (contact,) [N/m]
+    dashpots: FloatArray  # (contact,) [N s/m]
+
+
+def law_of(vehicle: Vehicle) -> Law:
+    """Matrices of a vehicle without its contacts, and its contacts."""
+    if np.isinf(vehicle.springs).any():
+        raise ValueError(
+            "the vehicle has rigid contacts (stiffness = inf), which the time-stepping methods do not know: give "
+            "each contact a finite stiffness [N/m]"
+        )
+    mass, damping, stiffness, contact_map = (np.ascontiguousarray(matrix) for matrix in vehicle.matrices)
+    return Law(mass, damping, stiffness, contact_map, vehicle.springs, vehicle.dashpots)
+
+
+def stiffness_at_rest(law: Law) -> FloatArray:
+    """Force at the contacts per constant displacement below them [N/m], shape (contact, contact).
+
+    More of them than the vehicle has rigid motions share the weight as the road sags.
+    """
+    pushed = law.contact_map.T * law.springs
+    held = law.stiffness + pushed @ law.contact_map
+    return np.diag(law.springs) - pushed.T @ np.linalg.solve(held, pushed)
+
+
+def no_vehicle(contacts: int) -> Law:
+    """Prescribed forces only."""
+    none = np.zeros((0, 0))
+    return Law(none, none, none, np.zeros((contacts, 0)), np.zeros(contacts), np.zeros(contacts))
+
+
+class Iteration(NamedTuple):
+    """How contact forces are found in each step: solved for (tolerance 0), or exchanged until they agree."""
+
+    tolerance: float = 0.0  # relative change of the forces at which they agree
+    most: int = 50
+
+
+SOLVED = Iteration()
+
+
+@dataclass(slots=True)
+class State:
+    """Where a march has got to: displacement, velocity and acceleration of road and vehicle, forces on the road."""
+
+    road: FloatArray  # (3, dof)
+    body: FloatArray  # (3, vehicle dof)
+    acting: FloatArray  # (contact,)
+    # Elements by which a travelling road has moved on.
+    shifted: IntArray = field(default_factory=lambda: np.zeros(1, np.int64))
+
+    def copied(self) -> State:
+        """Return a state that can be marched on without changing this one."""
+        return State(self.road.copy(), self.body.copy(), self.acting.copy(), self.shifted.copy())
+
+
+class Record(NamedTuple):
+    """What was seen on the way; row k belongs to step k, row 0 to the state at the start."""
+
+    force: FloatArray  # (time, contact) contact force without what was prescribed
+    deflection: FloatArray  # (time, contact)
+    observed: FloatArray  # (time, observer) deflection
+    motion: FloatArray  # (time, dof)
+    acceleration: FloatArray  # (time, dof)
+    iterations: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class March:
+    """One road, one scheme, one set of contacts: everything that stays constant, factorised once.
+
+    Parameters
+    ----------
+    road : FiniteGuideway
+        The road.
+    scheme : Scheme
+        Row of the scheme.
+    time_step : float
+        Step in time [s].
+    speed : float
+        Speed of the contacts [m/s].
+    contacts, observers : ndarray
+        Where they stand at step 0 [m].
+    law : Law
+        What happens at the contacts.
+    iteration : Iteration
+        How contact forces are found.
+    compiled : bool, optional
+        Whether to use the compiled loops; None: where they apply and numba is installed.
+    observers_travel : bool
+        Whether observers travel with the contacts or stand still.
+    contacts_across, observers_across : array_like
+        Where they stand left of the centre line [m].
+    """
+
+    road: FiniteGuideway
+    scheme: Scheme
+    time_step: float
+    speed: float
+    contacts: FloatArray
+    observers: FloatArray
+    law: Law
+    iteration: Iteration = SOLVED
+    compiled: bool | None = None
+    observers_travel: bool = True
+    contacts_across: ArrayLike = 0.0
+    observers_across: ArrayLike = 0.0
+
+    def at_rest(self, step: int = 0) -> State:
+        """Everything at zero, at a step of the journey."""
+        state = State(
+            np.zeros((3, self.road.dofs)), np.zeros((3, len(self.law.mass))), np.zeros(self.contacts.size)
+        )
+        if self.road.travels:
+            state.shifted[0] = self._elements(np.array(step))
+        return state
+
+    def places(self, step: int) -> FloatArray:
+        """Where the contacts stand at a step of the journey, seen from the road at rest there [m]."""
+        return self._places(self.contacts, step, self.at_rest(step))
+
+    def released(self, state: State, force: FloatArray) -> None:
+        """Give the road the acceleration that fits its displacement, its velocity and forces on it (dof,)."""
+        u, v, _ = state.road
+        force = force - self.road.stiffness @ u - self.road.damping @ v
+        state.road[2] = self.mass_solver.solve(force)
+
+    def begun(self, state: State, roughness: FloatArray, rate: FloatArray, load: FloatArray, step: int = 0) -> None:
+        """Give a state the contact forces and accelerations that fit it and the road under the contacts.
+
+        Parameters
+        ----------
+        state : State
+            Displacements and velocities; forces and accelerations are set.
+        roughness, rate, load : ndarray, shape (contact,)
+            Elevation [m], its rate [m/s] and prescribed forces [N] at this instant.
+        step : int
+            Step of the journey at which the state stands.
+        """
+        law, road = self.law, self.road
+        (u, v, _), (z, dz, _) = state.road, state.body
+        at = self._places(self.contacts, step, state)
+        rows = road.rows(at, 0, self.contacts_across)
+        force = law.springs * (law.contact_map @ z - rows @ u + roughness)
+        if law.dashpots.any():
+            sinking = rows @ v + self.speed * (road.rows(at, 1, self.contacts_across) @ u)
+            force += law.dashpots * (law.contact_map @ dz - sinking + rate)
+        state.acting[:] = force + load
+        state.body[2] = self._mass_inverse @ (-law.damping @ dz - law.stiffness @ z - law.contact_map.T @ force)
+        self.released(state, rows.T @ state.acting)
+
+    def prepare(self) -> None:
+        """Factorise now what the first step would otherwise factorise."""
+        _ = self._tables if self.uses_compiled else self._solver
+        _ = self.vehicle_inverse
+
+    def run(
+        self,
+        steps: int,
+        state: State,
+        *,
+        roughness: FloatArray,
+        rate: FloatArray,
+        loads: FloatArray,
+        origin: int = 0,
+        stage: str = "stepping",
+        progress: Progress = silent,
+    ) -> Record:
+        """Advance by some steps; `state` is advanced in place.
+
+        Parameters
+        ----------
+        steps : int
+            Number of steps.
+        state : State
+            Where to start; where it has got to, afterwards.
+        roughness, rate : ndarray, shape (steps + 1, contact)
+            Elevation [m] and its rate of change [m/s] under the contacts.
+        loads : ndarray, shape (steps + 1, contact) or (1, contact)
+            Prescribed forces on the road [N]; one row: constant.
+        origin : int
+            Step of the journey at which `state` stands.
+        stage : str
+            Name of the stage for `progress`.
+        progress : callable
+            Called with the name of the stage and the fraction of it that is done.
+
+        Returns
+        -------
+        Record
+            With `steps + 1` rows.
+
+        Raises
+        ------
+        SolveError
+            If the exchange of contact forces does not come to agree, or a result is not finite.
+        """
+        contacts, dofs = self.contacts.size, len(self.law.mass)
+        widths = (contacts, contacts, self.observers.size, dofs, dofs)
+        record: list[FloatArray] = [np.empty((steps + 1, width)) for width in widths]
+        record[0][0] = state.acting - loads[0]
+        watched = self._places(self.observers, origin, state) if self.observers_travel else self.observers
+        touched = self.road.rows(self._places(self.contacts, origin, state), 0, self.contacts_across)
+        record[1][0] = touched @ state.road[0]
+        record[2][0] = self.road.rows(watched, 0, self.observers_across) @ state.road[0]
+        record[3][0], record[4][0] = state.body[0], state.body[2]
+        stride, advance = min(STRIDE, WORK // self.road.dofs), self._compiled
+        if not self.uses_compiled:
+            entries = touched.nnz + self.observers.size
+            stride, advance = min(stride, ENTRIES // max(entries, 1)), self._plain
+        stride = max(stride, 1)
+        iterations, begin = 0, 0
+        while begin < steps:
+            end = min(begin + stride, steps)
+            failed, most = advance((origin, begin, end), state, roughness, rate, loads, record)
+            iterations = max(iterations, most)
+            if failed >= 0:
+                raise SolveError(
+                    f"the exchange of contact forces does not agree within {self.iteration.most} iterations "
+                    f"at {failed * self.time_step:.6g} s and {self.speed:g} m/s (relative tolerance "
+                    f"{self.iteration.tolerance:g}); a shorter time step than {self.time_step:g} s, or both sides "
+                    "solved as one system, is needed"
+                )
+            if not np.isfinite(record[1][end]).all() or not np.isfinite(record[3][end]).all():
+                raise SolveError(
+                    f"the response grows beyond floating-point range by {end * self.time_step:.6g} s at "
+                    f"{self.speed:g} m/s"
+                )
+            begin = end
+            progress(stage, end / steps)
+        force, deflection, observed, motion, acceleration = record
+        return Record(force, deflection, observed, motion, acceleration, iterations)
+
+    def __post_init__(self) -> None:
+        """Refuse compiled loops where they do not apply."""
+        if self.compiled and not self._suits:
+            raise ValueError(
+                "compiled must be None or False: the compiled loops take roads of beam elements without layers of "
+                "mass, as finite_track makes them"
+            )
+
+    @property
+    def uses_compiled(self) -> bool:
+        """Whether the compiled loops are used: where they apply and numba is installed, unless told otherwise."""
+        return self._suits and numba_is_there() if self.compiled is None else self.compiled
+
+    @cached_property
+    def _suits(self) -> bool:
+        """Whether the road is a chain of beam elements, with bands of half-width three."""
+        road, rows = self.road, self.road.interpolation
+        return (
+            road.mesh is not None
+            and isinstance(rows, CubicRows)
+            and rows.mesh is road.mesh
+            and road.dofs >= FEWEST
+            and max(half_width(matrix) for matrix in (road.mass, road.damping, road.stiffness)) <= 3
+        )
+
+    @cached_property
+    def effective(self) -> sparse.csc_array:
+        """(1 − α_m) M + (1 − α_f)(γ Δt C + β Δt² K)."""
+        beta, gamma, alpha_m, alpha_f = self.scheme
+        dt = self.time_step
+        moving = gamma * dt * self.road.damping + beta * dt * dt * self.road.stiffness
+        return sparse.csc_array((1 - alpha_m) * self.road.mass + (1 - alpha_f) * moving)
+
+    @cached_property
+    def vehicle_inverse(self) -> FloatArray:
+        """Inverse of the same for the vehicle."""
+        beta, gamma, alpha_m, alpha_f = self.scheme
+        dt, law = self.time_step, self.law
+        moving = gamma * dt * law.damping + beta * dt * dt * law.stiffness
+        return np.linalg.inv((1 - alpha_m) * law.mass + (1 - alpha_f) * moving)
+
+    @cached_property
+    def _mass_inverse(self) -> FloatArray:
+        return np.linalg.inv(self.law.mass)
+
+    @cached_property
+    def mass_solver(self) -> BandSolver | SparseSolver:
+        """Solves with the road's mass matrix."""
+        return solver(self.road.mass)
+
+    @cached_property
+    def _solver(self) -> BandSolver | SparseSolver:
+        return solver(self.effective)
+
+    @cached_property
+    def _tables(self) -> dict[str, Any]:
+        """What the compiled loops read."""
+        from movingfrf.stepping import compiled
+
+        road, n = self.road, self.road.dofs
+        bands = [bands_of(matrix, 3) for matrix in (self.effective, road.mass, road.damping, road.stiffness)]
+        half = (n - 3) // 2
+        rows, columns = np.zeros((half, 6)), np.zeros((half, 8))
+        core: FloatArray = np.zeros((n - 2 * half, n - 2 * half))
+        smallest = compiled.factorise(bands[0], rows, columns, core)
+        if not smallest > 0 or not np.linalg.eigvalsh(core)[0] > 0:
+            raise indefinite()
+        core = np.linalg.inv(core)
+        reach = self._reach(rows, columns, core)
+        first = np.zeros(n, np.int64)
+        needs_inverse = bool(len(self.law.mass))
+        inverse = compiled.influence(rows, columns, core, reach, first) if needs_inverse else np.zeros((1, 1))
+        mesh = road.mesh
+        assert mesh is not None
+        return {
+            "road": (*bands[1:], rows, columns, core, inverse, first),
+            "mesh": (np.array([mesh.first, mesh.element]), mesh.number.astype(np.int64), road.travels),
+        }
+
+    def _reach(self, rows: FloatArray, columns: FloatArray, core: FloatArray) -> int:
+        """Width outside which a row of the inverse is zero to rounding, judged in the middle of the road."""
+        from movingfrf.stepping import compiled
+
+        n = self.road.dofs
+        reach = 0
+        for unknown in (n // 2, n // 2 + 1):
+            row = np.zeros(n)
+            row[unknown] = 1.0
+            compiled.solve(rows, columns, core, row, np.empty(len(core)))
+            seen = np.flatnonzero(np.abs(row) > NEGLIGIBLE * np.abs(row).max())
+            reach = max(reach, int(np.abs(seen - unknown).max()))
+        return min(n, 2 * reach + 4)
+
+    def _compiled(
+        self,
+        steps: tuple[int, int, int],
+        state: State,
+        roughness: FloatArray,
+        rate: FloatArray,
+        loads: FloatArray,
+        record: list[FloatArray],
+    ) -> tuple[int, int]:
+        from movingfrf.stepping import compiled
+
+        law = self.law
+        loop: Callable[..., tuple[int, int]] = compiled.march
+        return loop(
+            np.array([self.time_step, *self.scheme]),
+            *self._tables["road"],
+            *self._tables["mesh"],
+            self.contacts,
+            self.observers,
+            float(self.speed),
+            self.observers_travel,
+            self.vehicle_inverse,
+            self._mass_inverse,
+            *law,
+            np.ascontiguousarray(roughness),
+            np.ascontiguousarray(rate),
+            np.ascontiguousarray(loads),
+            float(self.iteration.tolerance),
+            self.iteration.most,
+            state.road,
+            state.body,
+            state.acting,
+            state.shifted,
+            *steps,
+            *record,
+        )
+
+    def _plain(
+        self,
+        steps: tuple[int, int, int],
+        state: State,
+        roughness: FloatArray,
+        rate: FloatArray,
+        loads: FloatArray,
+        record: list[FloatArray],
+    ) -> tuple[int, int]:
+        """Advance as `compiled.march` does, one array operation after the other."""
+        beta, gamma, alpha_m, alpha_f = self.scheme
+        dt, law, road, keep = self.time_step, self.law, self.road, 1 - alpha_f
+        mass, damping, stiffness = road.mass, road.damping, road.stiffness
+        (u, v, a), (z, dz, ddz) = state.road, state.body
+        free_u, free_v, lift_u, lift_v = (0.5 - beta) * dt * dt, (1 - gamma) * dt, beta * dt * dt, gamma * dt
+        lifted = -keep * self.vehicle_inverse @ law.contact_map.T
+        own = law.contact_map @ lifted
+        contacts, identity = self.contacts.size, np.eye(self.contacts.size)
+        dashed = bool(law.dashpots.any())
+        worst = 0
+        origin, begin, end = steps
+        moved_on = self._elements(origin + np.arange(begin + 1, end + 1))
+        steps_now = origin + np.arange(begin + 1, end + 1)
+        touching, nobody = (self.contacts, self.contacts_across), (self.contacts[:0], 0.0)
+        rows = self._rows(touching, steps_now, moved_on)
+        slopes = self._rows(touching if dashed else nobody, steps_now, moved_on, derivative=1)
+        before = self._rows(touching if alpha_f else nobody, steps_now - 1, moved_on)
+        watched = self._rows(
+            (self.observers, self.observers_across),
+            steps_now if self.observers_travel else 0 * steps_now,
+            moved_on,
+        )
+        for step in range(begin + 1, end + 1):
+            now = step - begin - 1
+            if road.travels:
+                self._move_on(int(moved_on[now]), state)
+            at, values = rows.at(now)
+            load, earlier = loads[min(step, len(loads) - 1)], loads[min(step - 1, len(loads) - 1)]
+            right = np.zeros((road.dofs, 1 + contacts), order="F")
+            right[:, 0] = -(stiffness @ (u + keep * (dt * v + free_u * a))) - damping @ (v + keep * free_v * a)
+            if alpha_m:
+                right[:, 0] -= alpha_m * (mass @ a)
+            if alpha_f:
+                np.add.at(right[:, 0], before.at(now)[0], before.at(now)[1] * (alpha_f * state.acting)[:, None])
+            for contact in range(contacts):
+                np.add.at(right[:, 1 + contact], at[contact], keep * values[contact])
+            right[:, 0] += right[:, 1:] @ load
+            solved = self._solver.solve(right)
+            free_a, per_force = solved[:, 0], solved[:, 1:]
+            force: FloatArray = np.zeros(contacts)
+            if len(law.mass):
+                free_z, free_dz = z + dt * dz + free_u * ddz, dz + free_v * ddz
+                push = -law.stiffness @ (keep * free_z + alpha_f * z) - law.damping @ (
+                    keep * free_dz + alpha_f * dz
+                )
+                push -= alpha_m * (law.mass @ ddz) + alpha_f * law.contact_map.T @ (state.acting - earlier)
+                free_ddz = self.vehicle_inverse @ push
+                moved = u + dt * v + free_u * a + lift_u * free_a
+                yields = np.einsum("jq,jql->jl", values, per_force[at])
+                down = (values * moved[at]).sum(axis=1)
+                gap = law.springs * (law.contact_map @ (free_z + lift_u * free_ddz) - down + roughness[step])
+                matrix = identity + law.springs[:, None] * lift_u * (yields - own)
+                if dashed:
+                    along, inclines = slopes.at(now)
+                    sinking = (values * (v[at] + free_v * a[at] + lift_v * free_a[at])).sum(axis=1)
+                    sinking += self.speed * (inclines * moved[along]).sum(axis=1)
+                    gap += law.dashpots * (law.contact_map @ (free_dz + lift_v * free_ddz) - sinking + rate[step])
+                    yielding = np.einsum("jq,jql->jl", inclines, per_force[along])
+                    matrix += law.dashpots[:, None] * (lift_v * (yields - own) + self.speed * lift_u * yielding)
+                if self.iteration.tolerance:
+                    force, count = _exchanged(matrix, gap, state.acting - earlier, self.iteration)
+                    if count < 0:
+                        return step, worst
+                    worst = max(worst, count)
+                else:
+                    force = np.linalg.solve(matrix, gap)
+                ddz[:] = free_ddz + lifted @ force
+                z[:] = free_z + lift_u * ddz
+                dz[:] = free_dz + lift_v * ddz
+            new = free_a + per_force @ force
+            u += dt * v + free_u * a + lift_u * new
+            v += free_v * a + lift_v * new
+            a[:] = new
+            state.acting[:] = force + load
+            record[0][step], record[1][step] = force, (values * u[at]).sum(axis=1)
+            if self.observers.size:
+                seen, weights = watched.at(now)
+                record[2][step] = (weights * u[seen]).sum(axis=1)
+            record[3][step], record[4][step] = z, ddz
+            if alpha_m or alpha_f:
+                # What such a scheme carries as acceleration belongs to a later instant; that of this one balances.
+                push = -law.stiffness @ z - law.damping @ dz - law.contact_map.T @ force
+                record[4][step] = self._mass_inverse @ push
+        return -1, worst
+
+    def _rows(
+        self, places: tuple[FloatArray, ArrayLike], steps: IntArray, moved_on: IntArray, derivative: int = 0
+    ) -> _Rows:
+        """Rows of some places at some steps of the journey, on a road that has moved on by so many elements."""
+        along, across = places
+        travelled = self.speed * self.time_step * steps - moved_on * self.road.spacing
+        positions = travelled[:, None] + along
+        beside = np.broadcast_to(across, positions.shape).ravel()
+        return _Rows.of(self.road.rows(positions.ravel(), derivative, beside), len(along))
+
+    def _places(self, places: FloatArray, step: int, state: State) -> FloatArray:
+        """Where contacts or observers stand at a step of the journey, seen from the road."""
+        return places + (self.speed * self.time_step * step - state.shifted[0] * self.road.spacing)
+
+    def _elements(self, steps: IntArray) -> IntArray:
+        """Whole elements that a travelling road has moved on by some steps of the journey."""
+        if not self.road.travels:
+            return np.zeros(np.shape(steps), np.int64)
+        elements = np.floor(self.speed * self.time_step * steps / self.road.spacing + SAME_PLACE)
+        return elements.astype(np.int64)
+
+    def _move_on(self, elements: int, state: State) -> None:
+        """Let a travelling road follow until it has moved on by so many elements."""
+        elements -= int(state.shifted[0])
+        if elements > 0:
+            state.shifted[0] += elements
+            gone = elements * self.road.column
+            state.road[:, :-gone] = state.road[:, gone:].copy()
+            state.road[:, -gone:] = 0.0
+
+
+class _Rows(NamedTuple):
+    """Sparse rows, one per place and step, filled up with zeros to equal length."""
+
+    columns: IntArray  # (step · place, entry)
+    values: FloatArray
+    places: int
+
+    @classmethod
+    def of(cls, rows: sparse.csr_array, places: int) -> _Rows:
+        """Fill rows up."""
+        counts = np.diff(rows.indptr)
+        entry = np.arange(rows.indices.size) - np.repeat(rows.indptr[:-1], counts)
+        row = np.repeat(np.arange(counts.size), counts)
+        shape = (counts.size, int(counts.max(initial=0)))
+        columns, values = np.zeros(shape, np.int64), np.zeros(shape)
+        columns[row, entry], values[row, entry] = rows.indices, rows.data
+        return cls(columns, values, places)
+
+    def at(self, step: int) -> tuple[IntArray, FloatArray]:
+        """Columns and values of one step, shape (place, entry)."""
+        some = slice(step * self.places, (step + 1) * self.places)
+        return self.columns[some], self.values[some]
+
+
+def _exchanged(
+    matrix: FloatArray, right: FloatArray, force: FloatArray, iteration: Iteration
+) -> tuple[FloatArray, int]:
+    """Exchange contact forces until they agree; −1 if they do not."""
+    for count in range(1, iteration.most + 1):
+        fresh = right + force - matrix @ force
+        change, size = np.abs(fresh - force).max(), np.abs(fresh).max()
+        force = fresh
+        if change <= iteration.tolerance * size or size < TINY:
+            return force, count
+        if not size < HUGE:
+            break
+    return force, -1
+
+
+def numba_is_there() -> bool:
+    """Tell whether the compiled loops can be used."""
+    from importlib.util import find_spec
+
+    return find_spec("numba") is not None

@@ -1,0 +1,141 @@
+"""Prescribed forces that travel along a finite road, stepped in time by Newmark's method."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._basics.checks import FloatArray, checking, require_memory
+from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.version import VERSION
+from movingfrf.results.labels import LOADED, labelled
+from movingfrf.stepping.finite_guideway import FiniteGuideway
+from movingfrf.stepping.marching import March, no_vehicle
+from movingfrf.stepping.requirements import require_kinds, require_on_road, require_stable_scheme
+from movingfrf.stepping.schemes import Scheme, scheme_named
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def newmark_loads(
+    road: FiniteGuideway,
+    force: ArrayLike,
+    positions: ArrayLike,
+    *,
+    speed: float,
+    time_step: float = 1e-3,
+    start: float = 0.0,
+    observe: ArrayLike | None = None,
+    scheme: str | Scheme = "average_acceleration",
+    compiled: bool | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Deflection of a finite road under prescribed forces that travel along it, from rest at t = 0.
+
+    Parameters
+    ----------
+    road : FiniteGuideway
+        The road; see `finite_track`.
+    force : array_like, shape (time, load)
+        Forces [N], positive down.
+    positions : array_like, shape (load,)
+        Where the forces act, ahead of the frame that travels with them [m].
+    speed : float
+        Common speed [m/s]; zero stands still, a negative one travels backwards.
+    time_step : float
+        Step in time [s].
+    start : float
+        Distance of the frame's origin at t = 0 [m]; on a road that travels along it is 0.
+    observe : array_like, shape (point,), optional
+        Observation points in the same frame [m]; the loads' own by default.
+    scheme : str or Scheme
+        Time-stepping scheme, by name or as the row of its numbers.
+    compiled : bool, optional
+        Whether to use the compiled loops; None: where they apply and numba is installed.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        `deflection` (time, point) [m] and `force` (time, load) [N].
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible, shapes disagree, the loads would leave the road, the scheme is unstable, or memory
+        does not hold the result.
+    SolveError
+        If the road's matrices are inconsistent or a result is not finite.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> track = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9),
+    ...                  mf.Spring(stiffness=8.0e6, damping=3.0e4))
+    >>> road = mf.finite_track(track, first=-20.0, last=40.0, element=0.5)
+    >>> result = newmark_loads(road, np.full((2000, 1), 1e5), [0.0], speed=10.0)
+    >>> round(1e3 * result.deflection[-1, 0].item(), 2)  # mm
+    3.74
+    """
+    with checking() as check:
+        require_kinds(check, road=(road, FiniteGuideway))
+    with checking() as check:
+        at = check.array("positions", positions, "m", (None,))
+        forces = check.array("force", force, "N", (None, at.size))
+        points = at if observe is None else check.array("observe", observe, "m", (None,))
+        check.finite("speed", speed, "m/s")
+        check.positive("time_step", time_step, "s")
+        check.finite("start", start, "m")
+        row = scheme_named(check, scheme)
+        if not check.faults and (len(forces) < 2 or not at.size or not points.size):
+            check.refuse("force", "must have at least two samples, one load and one observation point")
+        if not check.faults and road.travels and (start or speed < 0):
+            check.refuse(
+                "start", f"must be 0 m, and the speed positive, on a road that travels along, got {start!r} m"
+            )
+    with checking() as check:
+        # A road that travels along follows element by element.
+        travelled = road.spacing if road.travels else speed * time_step * len(forces)
+        require_on_road(
+            check, road, start + np.concatenate([at, points]), (min(0.0, travelled), max(0.0, travelled))
+        )
+        require_stable_scheme(check, road, row, time_step)
+    require_memory(16.0 * len(forces) * (at.size + points.size), f"{len(forces)} steps of {time_step:g} s")
+    march = March(
+        road=road,
+        scheme=row,
+        time_step=time_step,
+        speed=speed,
+        contacts=start + at,
+        observers=start + points,
+        law=no_vehicle(at.size),
+        compiled=compiled,
+    )
+    state = march.at_rest()
+    state.acting[:] = forces[0]
+    march.released(state, road.rows(march.places(0)).T @ forces[0])
+    nothing: FloatArray = np.zeros_like(forces)
+    record = march.run(len(forces) - 1, state, roughness=nothing, rate=nothing, loads=forces, progress=progress)
+    values = {
+        "time": time_step * np.arange(len(forces)),
+        "load": at,
+        "point": points,
+        "force": forces,
+        "deflection": record.observed,
+    }
+    attributes: dict[str, str | float | int] = {
+        "title": "Response of a finite road to prescribed moving loads: Newmark's method",
+        "movingfrf": VERSION,
+        "speed": float(speed),
+        "time_step": float(time_step),
+        "start": float(start),
+        "scheme": repr(row),
+        "road_dofs": road.dofs,
+        "road_spacing": float(road.spacing),
+        "findings": "[]",
+    }
+    return labelled(values, LOADED, attributes)

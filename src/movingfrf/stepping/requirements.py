@@ -1,0 +1,180 @@
+"""What a finite road, a scheme and a journey must fulfil before the first step."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import eigvalsh
+
+from movingfrf._basics.checks import Checks, FloatArray
+from movingfrf.stepping.factors import solver
+from movingfrf.stepping.finite_guideway import SAME_PLACE, FiniteGuideway
+from movingfrf.stepping.schemes import Scheme
+from movingfrf.vehicles.vehicle import Vehicle
+
+# Unknowns of which all natural frequencies are computed to find the highest.
+FEW = 50
+
+# Share of a road at which nothing special happens.
+ODD = 0.43219
+
+# Places of the road at which its answer to a contact spring is looked at.
+PLACES = 65
+
+
+def require_kinds(check: Checks, **given: tuple[object, type]) -> None:
+    """Refuse arguments of another kind, and say what makes the right one.
+
+    Parameters
+    ----------
+    check : Checks
+        Collects the faults.
+    given : tuple of object and type
+        By the argument's name, what was given and what it must be.
+    """
+    makers = {
+        "FiniteGuideway": ", which finite_track cuts out of a track",
+        "SampledGuideway": ", which struck_track makes of a track",
+    }
+    for name, (value, kind) in given.items():
+        if not isinstance(value, kind):
+            hint = makers.get(kind.__name__, "")
+            check.refuse(name, f"must be a {kind.__name__}{hint}, got a {type(value).__name__}")
+
+
+def require_on_road(
+    check: Checks, road: FiniteGuideway, positions: FloatArray, travel: tuple[float, float]
+) -> None:
+    """Refuse a journey that leads off the road.
+
+    Parameters
+    ----------
+    check : Checks
+        Collects the fault.
+    road : FiniteGuideway
+        The road.
+    positions : ndarray
+        Where contacts and observers stand [m].
+    travel : tuple of float
+        How far they travel, backwards and forwards [m].
+    """
+    first, last = positions.min() + min(travel), positions.max() + max(travel)
+    slack = SAME_PLACE * (1 + abs(last))
+    if first < road.interval[0] - slack or last > road.interval[1] + slack:
+        check.refuse(
+            "road",
+            f"must reach from {first:.6g} m to {last:.6g} m, where the contacts travel (run-in included), but it "
+            f"reaches from {road.interval[0]:.6g} m to {road.interval[1]:.6g} m",
+        )
+
+
+def require_across(check: Checks, road: FiniteGuideway, across: FloatArray) -> None:
+    """Refuse contacts or observers beside the road.
+
+    Parameters
+    ----------
+    check : Checks
+        Collects the fault.
+    road : FiniteGuideway
+        The road.
+    across : ndarray
+        Where they stand, left of the centre line [m].
+    """
+    if road.width and np.abs(across).max() > 0.5 * road.width * (1 + SAME_PLACE):
+        check.refuse(
+            "road",
+            f"must be wide enough: it is {road.width:g} m wide, and a contact or a point stands "
+            f"{np.abs(across).max():.6g} m from its centre line",
+        )
+
+
+def require_slopes(check: Checks, road: FiniteGuideway) -> None:
+    """Refuse an interpolation whose first derivative is not the slope of its rows; a dashpot needs it.
+
+    Parameters
+    ----------
+    check : Checks
+        Collects the fault.
+    road : FiniteGuideway
+        The road.
+    """
+    first, last = road.interval
+    middle, step = first + ODD * (last - first), 1e-8 * (last - first)
+    rows = road.rows(np.array([middle - step, middle, middle + step])).toarray()
+    slope = road.rows(np.array([middle]), 1).toarray()[0]
+    # Where a row has a kink, as linear functions have at a node, either side will do.
+    sides = [(rows[1] - rows[0]) / step, (rows[2] - rows[1]) / step]
+    scale = max(np.abs(sides).max(), np.abs(slope).max())
+    if scale and min(np.abs(slope - side).max() for side in sides) > 1e-2 * scale:
+        check.refuse(
+            "interpolation",
+            f"must give with derivative 1 the slopes of its rows [1/m], which a contact with damping needs; at "
+            f"{middle:.6g} m it does not",
+        )
+
+
+def require_apart(check: Checks, road: FiniteGuideway, positions: FloatArray) -> None:
+    """Refuse contacts that stand closer to each other than the road's nodes."""
+    distances = np.diff(np.unique(positions))
+    distances = distances[distances > SAME_PLACE]
+    if distances.size and distances.min() < road.spacing * (1 - SAME_PLACE):
+        check.refuse(
+            "road",
+            f"must have nodes at most {distances.min():.4g} m apart, the distance between two contacts, got "
+            f"{road.spacing:.4g} m",
+        )
+
+
+def require_stable_scheme(
+    check: Checks, road: FiniteGuideway, scheme: Scheme, time_step: float, vehicle: Vehicle | None = None
+) -> None:
+    """Refuse a scheme that is unstable with this road and step, and say which condition fails.
+
+    Parameters
+    ----------
+    check : Checks
+        Collects the fault.
+    road : FiniteGuideway
+        The road.
+    scheme : Scheme
+        The scheme.
+    time_step : float
+        Step in time [s].
+    vehicle : Vehicle, optional
+        A vehicle that is stepped along.
+    """
+    limit = scheme.largest_phase
+    if np.isinf(limit):
+        return
+    if limit == 0.0:
+        condition = (
+            "α_m ≤ α_f ≤ ½, γ ≥ ½ − α_m + α_f and β ≥ ¼ + ½ (α_f − α_m)"
+            if scheme.alpha_m or scheme.alpha_f
+            else "γ ≥ ½"
+        )
+        check.refuse("scheme", f"is unstable at every step, since {condition} does not hold: {tuple(scheme)}")
+        return
+    highest, what = _highest(road), "the road's elements"
+    if vehicle is not None:
+        # No vibration of the two together is faster than this: stiffnesses add, and so do squares of frequencies.
+        springs = sum(contact.stiffness for contact in vehicle.contacts)
+        along, across = np.meshgrid(np.linspace(*road.interval, PLACES), np.unique(vehicle.across))
+        rows = road.rows(along.ravel(), 0, across.ravel()).toarray()
+        moved = float(np.einsum("pd,dp->p", rows, solver(road.mass).solve(rows.T)).max())
+        own = float(eigvalsh(vehicle.held_stiffness, vehicle.matrices[0])[-1])
+        highest, what = float(np.sqrt(highest**2 + own + springs * moved)), "road and vehicle"
+    if time_step * highest > limit:
+        check.refuse(
+            "time_step",
+            f"must be at most {limit / highest:.3g} s: with β = {scheme.beta:.4g} < γ/2 = {0.5 * scheme.gamma:.4g} "
+            f"the scheme is stable only while ω Δt ≤ {limit:.4g}, and {what} vibrate at up to "
+            f"{highest / (2 * np.pi):.4g} Hz, got {time_step!r} s",
+        )
+
+
+def _highest(road: FiniteGuideway) -> float:
+    """Highest natural frequency of a road [rad/s]."""
+    from scipy.sparse.linalg import eigsh
+
+    if road.dofs <= FEW:
+        return float(eigvalsh(road.stiffness.toarray(), road.mass.toarray())[-1] ** 0.5)
+    return float(eigsh(road.stiffness, 1, M=road.mass, which="LM", return_eigenvectors=False)[0] ** 0.5)

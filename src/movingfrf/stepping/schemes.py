@@ -1,0 +1,80 @@
+"""Time-stepping schemes: each is a row of four numbers."""
+
+from __future__ import annotations
+
+from numbers import Real
+from typing import NamedTuple
+
+from movingfrf._basics.checks import Checks, shown
+
+# Slack in the comparison of sums of parameters.
+ROUNDING = 1e-12
+
+
+class Scheme(NamedTuple):
+    """Newmark's method, generalised: M a(n+1−α_m) + C v(n+1−α_f) + K u(n+1−α_f) = f(n+1−α_f).
+
+    u(n+1) = u + Δt v + Δt² ((½ − β) a + β a(n+1)), v(n+1) = v + Δt ((1 − γ) a + γ a(n+1)); a value at n+1−α is
+    (1 − α) times the new and α times the old one (Newmark 1959; Chung and Hulbert, J. Appl. Mech. 60, 1993).
+
+    Parameters
+    ----------
+    beta, gamma : float
+        Newmark's parameters, dimensionless.
+    alpha_m, alpha_f : float
+        Shares of the old value in inertia and in forces, dimensionless; zero in Newmark's own method.
+
+    Examples
+    --------
+    >>> Scheme(beta=1 / 4, gamma=1 / 2).largest_phase
+    inf
+    """
+
+    beta: float
+    gamma: float
+    alpha_m: float = 0.0
+    alpha_f: float = 0.0
+
+    @property
+    def largest_phase(self) -> float:
+        """Largest ω Δt of an undamped vibration at which a scheme without α stays stable; inf if at any [rad]."""
+        if self.gamma < 0.5:
+            return 0.0
+        if self.alpha_m or self.alpha_f:
+            steady = self.alpha_m <= self.alpha_f <= 0.5
+            steady = steady and self.gamma >= 0.5 - self.alpha_m + self.alpha_f - ROUNDING
+            return (
+                float("inf")
+                if steady and self.beta >= 0.25 + 0.5 * (self.alpha_f - self.alpha_m) - ROUNDING
+                else 0.0
+            )
+        spare = 0.5 * self.gamma - self.beta
+        return float("inf") if spare <= 0 else float(spare**-0.5)
+
+
+def generalised_alpha(radius: float) -> Scheme:
+    """Scheme of second order whose highest frequencies shrink by `radius` in each step (Chung and Hulbert 1993)."""
+    alpha_m, alpha_f = (2 * radius - 1) / (radius + 1), radius / (radius + 1)
+    return Scheme(0.25 * (1 - alpha_m + alpha_f) ** 2, 0.5 - alpha_m + alpha_f, alpha_m, alpha_f)
+
+
+SCHEMES = {
+    "average_acceleration": Scheme(1 / 4, 1 / 2),
+    "linear_acceleration": Scheme(1 / 6, 1 / 2),
+    "fox_goodwin": Scheme(1 / 12, 1 / 2),
+    "central_difference": Scheme(0.0, 1 / 2),
+    "hilber_hughes_taylor": Scheme(1.1**2 / 4, 1 / 2 + 0.1, 0.0, 0.1),
+    "generalised_alpha": generalised_alpha(0.8),
+}
+
+
+def scheme_named(check: Checks, given: str | Scheme) -> Scheme:
+    """Find a scheme by its name, or take the row that is given."""
+    if isinstance(given, Scheme):
+        return given
+    if isinstance(given, tuple) and 2 <= len(given) <= 4 and all(isinstance(number, Real) for number in given):
+        return Scheme(*given)
+    if not isinstance(given, str) or given not in SCHEMES:
+        check.refuse("scheme", f"must be a Scheme or one of {', '.join(SCHEMES)}, got {shown(given)}")
+        return SCHEMES["average_acceleration"]
+    return SCHEMES[given]

@@ -1,0 +1,1 @@
+"""What takes many solutions: the comparison of methods and the paper."""

@@ -1,0 +1,1 @@
+"""One case by several methods: times, memory, errors, and ratios at equal error."""

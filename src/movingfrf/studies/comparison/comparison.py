@@ -1,0 +1,534 @@
+"""One case, several methods: how long each takes, how much memory, and how far it is from the converged answer.
+
+Every method gets the same scenario and the same spline profile; preparing and solving are both timed. The
+converged answer is the coupled method on a road that travels with the vehicle, refined in mesh and step and
+extrapolated until it no longer moves; it owes nothing to the frequency domain.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import statistics
+import subprocess
+import sys
+import time
+import tracemalloc
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from movingfrf._basics.checks import FloatArray, SolveError, ValidityWarning
+from movingfrf._basics.progress import Progress, silent
+from movingfrf.scenarios.scenario import Scenario, parse_scenario
+from movingfrf.studies.comparison.methods import (
+    AROUND,
+    WITH_LOADS,
+    WITH_VEHICLE,
+    Case,
+    Method,
+    chosen,
+    elements,
+    newmark,
+    stepped,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# Steps of the error–time figure, relative to the scenario's own: powers of two, so that all have times in common.
+STEPS = (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)
+
+# The converged answer: its movement at which it counts as converged, and at which it is none; how often it is
+# refined at most; the longest road around the vehicle, in lengths over which it bends.
+CONVERGED, HOPELESS, REFINEMENTS, WIDEST = 5e-6, 5e-2, 4, 200.0
+
+# Errors at which methods are compared for time, and the share of them that the ends of a road may add.
+TARGETS, UNSEEN = (1e-3, 1e-4), 0.2
+
+# Runs that are timed: until so many, or until they have taken so long together [s].
+RUNS, PATIENCE = 3, 2.0
+
+# A first run, which compiles and fills caches, is this long [s].
+WARM_UP = 0.2
+
+Quantities = dict[str, FloatArray]
+
+
+class Row(NamedTuple):
+    """One method at the scenario's own step."""
+
+    method: str
+    time_step: float
+    element: float  # nan where the method divides nothing
+    setup_s: float
+    solve_s: float
+    peak_bytes: int
+    relative_l2: dict[str, float]
+    maximum_error: dict[str, float]
+    ratio: float  # of its time to that of moving-frf; nan without that
+    findings: list[str]  # what the method itself says about the validity of its result
+
+
+class Point(NamedTuple):
+    """One run of the error–time figure."""
+
+    method: str
+    time_step: float
+    element: float
+    seconds: float
+    relative_l2: dict[str, float]
+
+
+class Reference(NamedTuple):
+    """The converged answer, and by how much it still moved when it was refined last."""
+
+    quantities: Quantities
+    time_step: float  # of what is kept
+    movement: dict[str, float]
+    finest_step: float
+    finest_element: float
+    around: float  # road at each side that the compared errors do not see, in lengths over which it bends
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Comparison:
+    """What `compare` found.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The case.
+    rows : list of Row
+        The table.
+    curve : list of Point
+        The error–time figure.
+    reference : Reference
+        What errors are relative to.
+    equal_error : dict of float to dict of str to float
+        Error in the first quantity → method → time at that error [s]; nan where it is not reached.
+    """
+
+    scenario: Scenario
+    rows: list[Row]
+    curve: list[Point]
+    reference: Reference
+    equal_error: dict[float, dict[str, float]] = field(default_factory=dict)
+
+    @property
+    def main_quantity(self) -> str:
+        """The quantity whose error decides: the contact force, or the deflection under prescribed loads."""
+        return next(iter(self.reference.quantities))
+
+
+def compare(
+    scenario: Scenario,
+    methods: Sequence[str] | None = None,
+    *,
+    curve: bool = True,
+    memory: bool = True,
+    runs: int = RUNS,
+    progress: Progress = silent,
+) -> Comparison:
+    """Solve one case by several methods and compare times, memory and errors.
+
+    One thread. Times are medians of a few runs, after a short one that is not timed.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        A vehicle on a rough road, or prescribed loads, on a track of an Euler–Bernoulli beam.
+    methods : sequence of str, optional
+        Names of methods; None: the usual ones.
+    curve : bool
+        Whether to run the methods over a range of steps as well.
+    memory : bool
+        Whether to measure peak memory, each method in a process of its own.
+    runs : int
+        Number of runs of which the median is taken, at most: fewer where they take long.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    Comparison
+        Table, curve, converged answer, times at equal error.
+
+    Raises
+    ------
+    ValueError
+        If a method is unknown or does not suit the scenario, or the guideway cannot be divided into elements.
+    SolveError
+        If the case has no meaningful answer.
+    """
+    compared = chosen(scenario, methods)
+    own = Case(scenario=scenario, time_step=scenario.journey.time_step, element=elements(scenario)[-1])
+    for case in (own, replace(own, element=elements(scenario)[0])):
+        case.road(travels=True)  # refuses what cannot be divided before anything long begins
+    with threadpool_limits(limits=1), _quiet():
+        # Whatever a method refuses it refuses here, before anything long begins.
+        _warm_up(own, compared, progress)
+        reference = converged(scenario, progress)
+        own = replace(own, around=reference.around)
+        rows = [_row(name, method, own, reference, memory, runs, progress) for name, method in compared.items()]
+        points = _curve(own, compared, reference, runs, progress) if curve else []
+    first = next((row for row in rows if row.method == "moving-frf"), None)
+    if first is not None:
+        least = first.setup_s + first.solve_s
+        rows = [row._replace(ratio=(row.setup_s + row.solve_s) / least) for row in rows]
+    main = next(iter(reference.quantities))
+    equal = {target: {name: time_at(points, name, main, target) for name in compared} for target in TARGETS}
+    return Comparison(
+        scenario=scenario, rows=rows, curve=points, reference=reference, equal_error=equal if points else {}
+    )
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep findings to themselves: they are those of the case, not of each of its many runs."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ValidityWarning)
+        yield
+
+
+def quantities(result: xr.Dataset, scenario: Scenario) -> Quantities:
+    """Pick what is compared of a result: arrays of shape (time, channel).
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What any method returned.
+    scenario : Scenario
+        The case.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Dynamic contact force [N], deflection without the sag [m], acceleration of the degrees of freedom that touch
+        the road [m/s²]; the deflection alone under prescribed loads.
+    """
+    if scenario.vehicle is None:
+        return {"deflection": result.deflection.values}
+    wheels = np.flatnonzero(np.abs(np.asarray(scenario.vehicle.contact_map)).any(axis=0))
+    return {
+        "contact_force": result.contact_force.values,
+        "deflection": result.deflection.values - result.static_deflection.values,
+        "wheel_acceleration": result.acceleration.values[:, wheels],
+    }
+
+
+def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
+    """Lengthen the road, then refine mesh and step together, until the extrapolated answer no longer moves.
+
+    Errors fall with the square of the step, or faster, so that (4 fine − coarse)/3 is the better answer.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The case.
+    progress : callable
+        As everywhere.
+
+    Returns
+    -------
+    Reference
+        At the scenario's own steps.
+
+    Raises
+    ------
+    SolveError
+        If the answer does not converge.
+    """
+    step, element = scenario.journey.time_step, elements(scenario)[0]
+    prepare = stepped if scenario.loads is None else newmark
+
+    def solved(level: int, around: float) -> Quantities:
+        case = Case(scenario=scenario, time_step=step / 2**level, element=element / 2**level, around=around)
+
+        def told(stage: str, fraction: float) -> None:
+            progress(f"converged answer, refinement {level}, {stage}", fraction)
+
+        result = prepare(case, travels=True, progress=told)()
+        return {name: values[:: 2**level].copy() for name, values in quantities(result, scenario).items()}
+
+    # First the length of the road, coarsely: what comes back from its ends changes the answer like a mesh error.
+    around, coarse, enough = AROUND, solved(0, AROUND), math.nan
+    while True:
+        wider = solved(0, 2 * around)
+        from_ends = relative_l2(coarse, wider)
+        if math.isnan(enough) and next(iter(from_ends.values())) <= UNSEEN * min(TARGETS):
+            enough = around
+        if max(from_ends.values()) <= CONVERGED or around >= WIDEST:
+            break
+        around, coarse = 2 * around, wider
+    answers: list[Quantities] = []
+    movement: dict[str, float] = {}
+    for level in range(1, REFINEMENTS + 1):
+        fine = solved(level, around)
+        answers.append({name: (4 * fine[name] - coarse[name]) / 3 for name in fine})
+        coarse = fine
+        if len(answers) > 1:
+            movement = relative_l2(answers[-2], answers[-1])
+            if max(movement.values()) <= CONVERGED:
+                break
+    movement = {name: max(moved, from_ends[name]) for name, moved in movement.items()}
+    if not min(movement.values()) <= HOPELESS:
+        raise SolveError(
+            f"the answer from the time domain does not converge: it still moves by {min(movement.values()):.1e} "
+            f"when step and elements are halved for the last time, to {step / 2**level:.3g} s; the scenario's "
+            f"time_step, {step:g} s, is too long, or its loads begin or end too abruptly"
+        )
+    enough = around if math.isnan(enough) else enough
+    return Reference(answers[-1], step, movement, step / 2**level, element / 2**level, enough)
+
+
+def relative_l2(found: Quantities, wanted: Quantities) -> dict[str, float]:
+    """Relative L2 difference of each quantity, its worst channel.
+
+    Parameters
+    ----------
+    found, wanted : dict of str to ndarray
+        Quantities at the same times.
+
+    Returns
+    -------
+    dict of str to float
+        By quantity; of a channel that is zero the difference itself.
+    """
+    return {name: _worst(found[name] - wanted[name], wanted[name], _root_mean_square) for name in wanted}
+
+
+def maximum_error(found: Quantities, wanted: Quantities) -> dict[str, float]:
+    """Largest difference of each quantity over its largest value, the worst channel.
+
+    Parameters
+    ----------
+    found, wanted : dict of str to ndarray
+        Quantities at the same times.
+
+    Returns
+    -------
+    dict of str to float
+        By quantity.
+    """
+    return {name: _worst(found[name] - wanted[name], wanted[name], _largest) for name in wanted}
+
+
+def _root_mean_square(values: FloatArray) -> FloatArray:
+    size: FloatArray = np.sqrt(np.mean(values**2, axis=0))
+    return size
+
+
+def _largest(values: FloatArray) -> FloatArray:
+    size: FloatArray = np.abs(values).max(axis=0)
+    return size
+
+
+def _worst(difference: FloatArray, wanted: FloatArray, size: Callable[[FloatArray], FloatArray]) -> float:
+    scale = size(wanted)
+    return float((size(difference) / np.where(scale > 0, scale, 1.0)).max())
+
+
+def _aligned(result: xr.Dataset, case: Case, reference: Reference) -> tuple[Quantities, Quantities]:
+    """Quantities of a result and of the converged answer at the times that both have."""
+    found = quantities(result, case.scenario)
+    ratio = case.time_step / reference.time_step
+    # The coarser of the two steps is a whole multiple of the other.
+    mine, its = (1, round(ratio)) if ratio >= 1 else (round(1 / ratio), 1)
+    pairs = {name: (found[name][::mine], reference.quantities[name][::its]) for name in found}
+    count = min(len(values) for pair in pairs.values() for values in pair)
+    if case.scenario.vehicle is not None:
+        # At the end of the journey a footprint reaches over road that nobody knows.
+        ahead = max(contact.footprint for contact in case.scenario.vehicle.contacts) / (2 * case.journey.speed)
+        count -= math.ceil(ahead / max(case.time_step, reference.time_step))
+    return {name: a[:count] for name, (a, _) in pairs.items()}, {name: b[:count] for name, (_, b) in pairs.items()}
+
+
+def _warm_up(case: Case, methods: Mapping[str, Method], progress: Progress) -> None:
+    """Run each method once, briefly: compiled loops are compiled, modules loaded."""
+    journey = case.scenario.journey
+    brief = replace(journey, duration=min(journey.duration, max(WARM_UP, 20 * journey.time_step)))
+    short = replace(case, scenario=replace(case.scenario, journey=brief))
+    for number, (name, method) in enumerate(methods.items()):
+        progress(f"loading {name}", number / len(methods))
+        method.prepare(short)()
+
+
+def _timed(method: Method, case: Case, runs: int) -> tuple[float, float, xr.Dataset]:
+    """Median times of preparing and of solving [s], and the result."""
+    setups: list[float] = []
+    solves: list[float] = []
+    began = time.perf_counter()
+    while len(setups) < runs and (not setups or time.perf_counter() - began < PATIENCE):
+        first = time.perf_counter()
+        solve = method.prepare(case)
+        second = time.perf_counter()
+        result = solve()
+        solves.append(time.perf_counter() - second)
+        setups.append(second - first)
+    return statistics.median(setups), statistics.median(solves), result
+
+
+def _row(
+    name: str, method: Method, case: Case, reference: Reference, memory: bool, runs: int, progress: Progress
+) -> Row:
+    progress(f"{name}, {case.time_step:g} s", 0.0)
+    setup, solve, result = _timed(method, case, runs)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ValidityWarning)
+        method.prepare(case)()
+    said = [str(warning.message) for warning in caught if issubclass(warning.category, ValidityWarning)]
+    found, wanted = _aligned(result, case, reference)
+    if memory:
+        progress(f"{name}, memory", 0.5)
+    return Row(
+        name,
+        case.time_step,
+        case.element if method.divides else math.nan,
+        setup,
+        solve,
+        peak_memory(name, case) if memory else 0,
+        relative_l2(found, wanted),
+        maximum_error(found, wanted),
+        math.nan,
+        list(dict.fromkeys(said)),
+    )
+
+
+def _curve(
+    case: Case, methods: Mapping[str, Method], reference: Reference, timings: int, progress: Progress
+) -> list[Point]:
+    """Run every method over a range of steps, and over some elements where it has any."""
+    journey = case.scenario.journey
+    # A step must leave a few samples, and be a whole multiple or part of the scenario's.
+    steps = [factor * case.time_step for factor in STEPS if factor * case.time_step <= journey.duration / 20]
+    runs = [
+        (name, replace(case, time_step=step, element=element))
+        for name, method in methods.items()
+        for element in (elements(case.scenario) if method.divides else [case.element])
+        for step in steps
+    ]
+    points = []
+    for number, (name, run) in enumerate(runs):
+        progress(f"error over time: {name}, {run.time_step:g} s", number / len(runs))
+        setup, solve, result = _timed(methods[name], run, timings)
+        error = relative_l2(*_aligned(result, run, reference))
+        element = run.element if methods[name].divides else math.nan
+        points.append(Point(name, run.time_step, element, setup + solve, error))
+    return points
+
+
+def time_at(points: Sequence[Point], method: str, quantity: str, target: float) -> float:
+    """Read from the error–time figure how long a method takes to an error.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        The figure.
+    method : str
+        Name of the method.
+    quantity : str
+        Quantity whose relative L2 error counts.
+    target : float
+        That error, a ratio.
+
+    Returns
+    -------
+    float
+        Least time [s] at which a line through the method's points, straight in the logarithms and at one length of
+        elements, reaches the error; nan if none does.
+    """
+    times = []
+    lines: dict[str, list[Point]] = {}
+    for point in points:
+        if point.method == method:
+            lines.setdefault(str(point.element), []).append(point)
+    for line in lines.values():
+        line.sort(key=lambda point: -point.time_step)
+        errors = np.log([max(point.relative_l2[quantity], 1e-300) for point in line])
+        seconds = np.log([point.seconds for point in line])
+        aim = math.log(target)
+        times += [float(value) for value, error in zip(seconds, errors, strict=True) if error <= aim]
+        for n in range(len(line) - 1):
+            if (errors[n] - aim) * (errors[n + 1] - aim) < 0:
+                share = (aim - errors[n]) / (errors[n + 1] - errors[n])
+                times.append(float(seconds[n] + share * (seconds[n + 1] - seconds[n])))
+    return math.exp(min(times)) if times else math.nan
+
+
+def peak_memory(name: str, case: Case) -> int:
+    """Most memory that a method's arrays take at once, in a process of its own.
+
+    Parameters
+    ----------
+    name : str
+        Name of the method.
+    case : Case
+        The case.
+
+    Returns
+    -------
+    int
+        Bytes, as Python's tracemalloc counts them: all that NumPy allocates, from preparing to the result.
+
+    Raises
+    ------
+    RuntimeError
+        If the process fails.
+    """
+    scenario = case.scenario
+    asked = {
+        "method": name,
+        "text": scenario.text,
+        "folder": str(scenario.folder),
+        "time_step": case.time_step,
+        "element": case.element,
+        "around": case.around,
+    }
+    command = [sys.executable, "-m", "movingfrf.studies.comparison.comparison"]
+    done = subprocess.run(command, input=json.dumps(asked), capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(f"measuring the memory of {name} failed: {done.stderr[-2000:]}")
+    return int(done.stdout)
+
+
+def _measure_memory(asked: Mapping[str, Any]) -> int:
+    """Measure the peak in this process."""
+    scenario = parse_scenario(asked["text"], folder=asked["folder"])
+    case = Case(scenario=scenario, time_step=asked["time_step"], element=asked["element"], around=asked["around"])
+    method = (WITH_VEHICLE if scenario.loads is None else WITH_LOADS)[asked["method"]]
+    with threadpool_limits(limits=1), _quiet():
+        _warm_up(case, {asked["method"]: method}, silent)
+        tracemalloc.start()
+        method.prepare(case)()
+        return tracemalloc.get_traced_memory()[1]
+
+
+def ratios(comparison: Comparison, target: float) -> dict[str, float]:
+    """Time of each method over that of moving-frf, at equal error.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        What `compare` found.
+    target : float
+        The error, a ratio.
+
+    Returns
+    -------
+    dict of str to float
+        By method; nan where either does not reach the error.
+    """
+    times = comparison.equal_error[target]
+    least = times.get("moving-frf", math.nan)
+    return {name: seconds / least for name, seconds in times.items()}
+
+
+if __name__ == "__main__":
+    print(_measure_memory(json.load(sys.stdin)))

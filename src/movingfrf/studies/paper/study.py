@@ -1,0 +1,264 @@
+"""What the items of the paper share: its scenarios, and results that more than one of them shows."""
+
+from __future__ import annotations
+
+import statistics
+import time
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from movingfrf._basics.checks import ComplexArray, FloatArray, ValidityWarning
+from movingfrf._basics.progress import Progress, silent
+from movingfrf.guideways.guideway import Guideway
+from movingfrf.guideways.sampled import SampledGuideway
+from movingfrf.guideways.track import Track
+from movingfrf.response.line import SpectralGrid
+from movingfrf.response.simulation import moving_loads, simulate
+from movingfrf.roughness.profile import Profile
+from movingfrf.scenarios.scenario import Scenario, parse_scenario
+from movingfrf.stepping.finite_guideway import FiniteGuideway, finite_track
+from movingfrf.stepping.impulse import struck_track
+from movingfrf.stepping.moving_loads import newmark_loads
+from movingfrf.studies.comparison.comparison import Comparison, compare
+from movingfrf.studies.comparison.methods import WITH_VEHICLE, Case, elements
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# The scenarios that ship with the package.
+SCENARIOS = ("load", "load_abrupt", "truck", "truck_times", "truck_narrow", "truck_3d", "truck_3d_paths")
+
+# The paper's truncation [Hz], and the frequency beyond which its moving FRF falls [Hz].
+TRUNCATION, FALLING = 70.0, 17.0
+
+# The road that Newmark's method is applied to in the paper: 120 m and 240 elements; here the load starts so far in.
+NEWMARK_LENGTH, NEWMARK_ELEMENT, NEWMARK_START = 120.0, 0.5, 10.0
+
+# Runs that are timed, alternately.
+RUNS = 5
+
+
+@cache
+def scenario(name: str) -> Scenario:
+    """Read one of the scenarios that ship with the package.
+
+    Parameters
+    ----------
+    name : str
+        Its name, without the ending.
+
+    Returns
+    -------
+    Scenario
+        Checked.
+    """
+    text = files("movingfrf").joinpath("studies", "paper", "scenarios", f"{name}.toml").read_text(encoding="utf-8")
+    return parse_scenario(text, name=name, source=f"{name}.toml")
+
+
+@dataclass(frozen=True)
+class Study:
+    """One run of the reproduction; what several items need is computed once, when the first of them asks for it.
+
+    Parameters
+    ----------
+    quick : bool
+        Whether to do everything more coarsely.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+    """
+
+    quick: bool = False
+    progress: Progress = silent
+
+    def told(self, stage: str, done: int, of: int) -> None:
+        """Report that so many of so many parts of a stage are done."""
+        self.progress(stage, done / of)
+
+    @cached_property
+    def road(self) -> Track:
+        """The road, 3 m wide."""
+        guideway = scenario("truck").guideway
+        assert isinstance(guideway, Track)
+        return guideway
+
+    @property
+    def speed(self) -> float:
+        """The paper's speed [m/s]."""
+        return scenario("truck").journey.speed
+
+    @cached_property
+    def wheelbase(self) -> float:
+        """Distance between the axles [m]."""
+        vehicle = scenario("truck").vehicle
+        assert vehicle is not None
+        return float(np.ptp(vehicle.positions))
+
+    @cached_property
+    def offsets(self) -> FloatArray:
+        """Under the load, one wheelbase ahead, one behind [m]."""
+        return np.array([0.0, self.wheelbase, -self.wheelbase])
+
+    @cached_property
+    def struck(self) -> SampledGuideway:
+        """The paper's way: 40 m of finite elements with pinned ends, struck once, steps of 1 ms."""
+        return self._struck(plain=True)
+
+    @cached_property
+    def struck_finely(self) -> SampledGuideway:
+        """Four roads of 40 m whose end reflections cancel, finer elements and steps."""
+        return self._struck(plain=False)
+
+    def _struck(self, *, plain: bool) -> SampledGuideway:
+        with quiet():
+            return struck_track(
+                self.road, speed=self.speed, offsets=self.offsets, plain=plain, progress=self.progress
+            )
+
+    @cached_property
+    def newmark_road(self) -> FiniteGuideway:
+        """The paper's road for Newmark's method: 480 unknowns."""
+        first = -NEWMARK_START
+        return finite_track(
+            self.road, first=first, last=first + NEWMARK_LENGTH, element=NEWMARK_ELEMENT, ends="pinned"
+        )
+
+    @cached_property
+    def force(self) -> FloatArray:
+        """The load's history, shape (time, 1) [N]."""
+        return history("load")
+
+    def under_load(self, guideway: Guideway, name: str = "load") -> xr.Dataset:
+        """Deflection under the moving load, by the moving FRF, nothing left out."""
+        journey = scenario(name).journey
+        with quiet():
+            return moving_loads(guideway, history(name), [0.0], speed=journey.speed, time_step=journey.time_step)
+
+    def cut_sharply(self, guideway: Guideway, name: str = "load") -> Callable[[float], FloatArray]:
+        """Prepare the deflection under the moving load as the paper truncates it: without frequencies beyond a cut.
+
+        (`moving_loads` lets it fade over the next 5 %, since a sharp cut rings.)
+        """
+        journey = scenario(name).journey
+        samples, step = journey.samples, journey.time_step
+        grid = SpectralGrid(samples=samples, time_step=step, settling=samples * step)
+        spectrum = guideway.moving_frf([0.0], journey.speed, grid.omega()) * grid.to_spectra(history(name))
+        kept = np.arange(grid.size) / (grid.padded * step)
+        return lambda cut: grid.to_histories(spectrum[kept <= cut * (1 + 1e-9)]).values
+
+    @cached_property
+    def by_newmark(self) -> xr.Dataset:
+        """Deflection under the moving load, by Newmark's method on the paper's road."""
+        journey = scenario("load").journey
+        return newmark_loads(self.newmark_road, self.force, [0.0], speed=journey.speed, time_step=journey.time_step)
+
+    def driven(
+        self,
+        guideway: Guideway,
+        name: str = "truck",
+        truncation: float | None = TRUNCATION,
+        *,
+        duration: float | None = None,
+        profile: Profile | None = None,
+    ) -> xr.Dataset:
+        """Response of the vehicle and the road, by the moving FRF; on another profile or for another time."""
+        case = scenario(name)
+        assert case.vehicle is not None
+        assert case.road is not None
+        journey = case.journey
+        with quiet():
+            return simulate(
+                guideway,
+                case.vehicle,
+                case.road.profile if profile is None else profile,
+                speed=journey.speed,
+                duration=journey.duration if duration is None else duration,
+                time_step=journey.time_step,
+                truncation=truncation,
+                blend=journey.blend,
+            )
+
+    @cached_property
+    def by_moving_frf(self) -> xr.Dataset:
+        """Response of vehicle and road as in the paper: moving FRF of the struck 40 m, up to 70 Hz."""
+        return self.driven(self.struck)
+
+    @cached_property
+    def in_closed_form(self) -> xr.Dataset:
+        """Response of vehicle and road with the moving FRF in closed form."""
+        return self.driven(self.road)
+
+    @cached_property
+    def by_cdfm(self) -> xr.Dataset:
+        """Response of vehicle and road by the coupled method."""
+        return self._stepped("cdfm")
+
+    @cached_property
+    def by_sim(self) -> xr.Dataset:
+        """Response of vehicle and road by the separate iterative method."""
+        return self._stepped("sim")
+
+    def _stepped(self, method: str) -> xr.Dataset:
+        case = scenario("truck")
+        of = Case(scenario=case, time_step=case.journey.time_step, element=elements(case)[-1])
+        with quiet():
+            return WITH_VEHICLE[method].prepare(of)()
+
+    @cached_property
+    def compared(self) -> Comparison:
+        """All methods on the vehicle's journey; in the quick version its first second, each run once."""
+        case, brief = scenario("truck_times"), self.quick
+        if brief:
+            case = replace(case, journey=replace(case.journey, duration=1.0))
+        methods = ["moving-frf", "moving-frf-fe", "moving-frf-fe-plain", "duhamel", "cdfm", "cdfm-weight", "sim"]
+        return compare(case, methods, memory=not brief, runs=1 if brief else 3, progress=self.progress)
+
+
+@cache
+def history(name: str) -> FloatArray:
+    """Load of a scenario at its steps, shape (time, 1) [N]."""
+    case = scenario(name)
+    assert case.loads is not None
+    at = np.arange(case.journey.samples) * case.journey.time_step
+    return np.stack([force(at) for force in case.loads.histories], axis=1)
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep findings to themselves: the report shows the errors."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ValidityWarning)
+        yield
+
+
+def closed_form(road: Track, frequency: FloatArray, offsets: FloatArray, speed: float) -> ComplexArray:
+    """Sum the residues of the moving FRF at real frequencies [m/N], shape (frequency, offset)."""
+    return road.moving_frf(offsets, speed, 2 * np.pi * frequency)
+
+
+def relative(found: FloatArray, wanted: FloatArray) -> float:
+    """Relative L2 difference, the worst channel of (time, channel)."""
+    return float((np.linalg.norm(found - wanted, axis=0) / np.linalg.norm(wanted, axis=0)).max())
+
+
+def timed(ways: Mapping[str, Callable[[], object]], runs: int = RUNS) -> dict[str, float]:
+    """Median time of each way [s], on one thread, after one run that does not count, taken in turns."""
+    with threadpool_limits(limits=1):
+        for way in ways.values():
+            way()
+        seconds: dict[str, list[float]] = {name: [] for name in ways}
+        for _ in range(runs):
+            for name, way in ways.items():
+                began = time.perf_counter()
+                way()
+                seconds[name].append(time.perf_counter() - began)
+    return {name: statistics.median(taken) for name, taken in seconds.items()}

@@ -1,0 +1,73 @@
+"""How a vehicle travels, and in what steps it is observed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._basics.checks import checking
+from movingfrf.vehicles.vehicle import Vehicle
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Journey:
+    """How a vehicle travels and in what steps it is observed.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [m/s].
+    duration : float
+        Duration [s].
+    start : float
+        Distance of the vehicle's reference point at t = 0 [m].
+    time_step : float
+        Step in time [s].
+    truncation : float, optional
+        Frequency beyond which the road counts as rigid [Hz].
+    blend : float
+        Length over which the profile sets in [m].
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible.
+    """
+
+    speed: float
+    duration: float
+    start: float = 0.0
+    time_step: float = 1e-3
+    truncation: float | None = None
+    blend: float = 5.0
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        with checking() as check:
+            check.positive("speed", self.speed, "m/s")
+            check.positive("duration", self.duration, "s")
+            check.positive("time_step", self.time_step, "s")
+            check.finite("start", self.start, "m")
+            check.not_negative("blend", self.blend, "m")
+            if self.truncation is not None:
+                check.not_negative("truncation", self.truncation, "Hz")
+            if not check.faults and self.samples < 2:
+                check.refuse(
+                    "duration", f"must be at least two time steps of {self.time_step:g} s, got {self.duration:g} s"
+                )
+
+    @property
+    def samples(self) -> int:
+        """Number of time steps."""
+        return round(self.duration / self.time_step)
+
+    def interval(self, vehicle: Vehicle) -> tuple[float, float]:
+        """First and last distance that a contact meets [m]."""
+        positions = self.start + vehicle.positions
+        return float(positions.min()), float(positions.max()) + self.speed * self.time_step * self.samples
+
+    def coordinates(self, vehicle: Vehicle) -> dict[str, ArrayLike]:
+        """Coordinates of a coupled result by their names in the schema: times, contacts, degrees of freedom."""
+        return {"time": np.arange(self.samples) * self.time_step, **vehicle.coordinates}

@@ -1,0 +1,297 @@
+"""One vehicle for all: matrices, and a map from its degrees of freedom to its contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NotRequired, TypedDict
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._basics.checks import Checks, ComplexArray, FloatArray, NumberArray, checking, shown
+from movingfrf.vehicles.contact import Contact
+from movingfrf.vehicles.dynamics import Dynamics, Matrices, held, parts, split
+
+# Standard acceleration of free fall as the project fixes it [m/s²].
+GRAVITY = 9.81
+
+# Offsets between contacts that differ by less [m] are the same: the cars of a train have most of theirs in common.
+SAME_OFFSET_DIGITS = 9
+
+
+class Offsets(TypedDict):
+    """Offsets between contacts, as a guideway's `moving_frf` takes them, each (receiver, source) [m]."""
+
+    ahead: FloatArray
+    # Of a vehicle with contacts beside the centre line only.
+    across: NotRequired[FloatArray]
+    source_across: NotRequired[FloatArray]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Vehicle:
+    """A linear vehicle: M z̈ + C ż + K z on its own, joined to the guideway by its contacts.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : array_like, shape (dof, dof)
+        Symmetric matrices of the vehicle without its contact springs [kg, N s/m, N/m; rotations in rad].
+        Mass positive definite, damping and stiffness positive semidefinite.
+    contact_map : array_like, shape (contact, dof)
+        Displacement of the vehicle at each contact per degree of freedom [m/m or m/rad].
+    contacts : sequence of Contact
+        The contacts, one per row of `contact_map`.
+    vertical : array_like, shape (dof,)
+        Motion of each degree of freedom when the vehicle moves down by one metre (1 for translations, 0 for
+        rotations); gravity acts along it. It strains nothing within the vehicle and moves each contact by one.
+    dof_names : sequence of str
+        One name per degree of freedom.
+
+    Raises
+    ------
+    ValueError
+        If shapes disagree, a matrix is not symmetric or not definite as demanded, `vertical` is not a rigid
+        motion, the contacts do not hold the vehicle up, two rigid contacts prescribe the same motion, or no weight
+        reaches a contact.
+    """
+
+    mass: ArrayLike
+    damping: ArrayLike
+    stiffness: ArrayLike
+    contact_map: ArrayLike
+    contacts: Sequence[Contact]
+    vertical: ArrayLike
+    dof_names: Sequence[str]
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        with checking() as check:
+            contacts, names = check.listed("contacts", self.contacts, Contact), _names(check, self.dof_names)
+            dofs = len(names)
+            checked: dict[str, object] = {"contacts": contacts, "dof_names": names}
+            for name, unit in (("mass", "kg"), ("damping", "N s/m"), ("stiffness", "N/m")):
+                checked[name] = check.array(name, getattr(self, name), unit, (dofs, dofs))
+            checked["contact_map"] = check.array("contact_map", self.contact_map, "m/m", (len(contacts), dofs))
+            checked["vertical"] = check.array("vertical", self.vertical, "m/m", (dofs,))
+            if not check.faults:
+                _check_definite(check, "mass", checked["mass"], strictly=True)
+                _check_definite(check, "damping", checked["damping"], strictly=False)
+                _check_definite(check, "stiffness", checked["stiffness"], strictly=False)
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+        with checking() as check:
+            _check_free(check, self)
+            _check_held(check, self)
+        with checking() as check:
+            _check_carried(check, self)
+
+    # The fields as arrays: what the constructor stored.
+    @property
+    def matrices(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Mass, damping, stiffness and contact map as arrays."""
+        return self.mass, self.damping, self.stiffness, self.contact_map  # type: ignore[return-value]
+
+    @property
+    def springs(self) -> FloatArray:
+        """Stiffness of each contact [N/m], `inf` where it is rigid."""
+        return np.array([contact.stiffness for contact in self.contacts], float)
+
+    @property
+    def dashpots(self) -> FloatArray:
+        """Damping of each contact [N s/m]."""
+        return np.array([contact.damping for contact in self.contacts], float)
+
+    @property
+    def positions(self) -> FloatArray:
+        """Position of each contact ahead of the reference point [m]."""
+        return np.array([contact.position for contact in self.contacts])
+
+    @property
+    def across(self) -> FloatArray:
+        """Position of each contact left of the centre line [m]."""
+        return np.array([contact.across for contact in self.contacts])
+
+    @property
+    def paths(self) -> list[int]:
+        """Path of the profile that each contact follows."""
+        return [contact.path for contact in self.contacts]
+
+    @property
+    def coordinates(self) -> dict[str, ArrayLike]:
+        """Coordinates of a result by their names in the schema: contacts and degrees of freedom."""
+        return {
+            "contact": np.arange(len(self.contacts)),
+            "position": self.positions,
+            "path": np.array(self.paths),
+            "contact_name": np.array([contact.name for contact in self.contacts]),
+            "dof": np.array(self.dof_names),
+            "dof_unit": np.where(np.asarray(self.vertical) == 0, "rad", "m"),
+        }
+
+    @property
+    def offsets(self) -> Offsets:
+        """Offset of every contact from every contact, as a guideway's `moving_frf` takes them [m]."""
+        ahead, across = self.positions, self.across
+        offsets: Offsets = {"ahead": np.round(ahead[:, None] - ahead, SAME_OFFSET_DIGITS)}
+        if across.any():
+            offsets["across"] = across[:, None] - across
+            offsets["source_across"] = np.broadcast_to(across, offsets["ahead"].shape)
+        return offsets
+
+    @property
+    def weights(self) -> FloatArray:
+        """Weight along each degree of freedom [N]."""
+        return GRAVITY * self.matrices[0] @ np.asarray(self.vertical)
+
+    @property
+    def static_loads(self) -> FloatArray:
+        """Contact forces of the vehicle at rest on a rigid flat road [N]."""
+        impedance, rows, _ = self._held()
+        motion = split(self.matrices[3], np.isinf(self.springs))
+        assert motion is not None
+        sag = motion.free @ np.linalg.solve(
+            motion.free.T @ impedance.constant @ motion.free, motion.free.T @ self.weights
+        )
+        sprung = np.where(np.isinf(self.springs), 0.0, self.springs) * (rows @ sag)
+        return sprung + motion.prescribed.T @ (self.weights - impedance.constant @ sag)
+
+    @property
+    def poles(self) -> ComplexArray:
+        """Poles on a rigid road [rad/s], one of each conjugate pair, by ascending magnitude."""
+        return self.dynamics().poles
+
+    @property
+    def natural_frequencies(self) -> FloatArray:
+        """Magnitude of each pole over 2π [Hz], ascending; an overdamped mode appears as two."""
+        return np.abs(self.poles) / (2 * np.pi)
+
+    @property
+    def damping_ratios(self) -> FloatArray:
+        """Damping ratio of each pole, in the order of `natural_frequencies`; 1 for an overdamped mode."""
+        return -self.poles.real / np.abs(self.poles)
+
+    def dynamics(self) -> Dynamics:
+        """Prepare the vehicle to be asked what it does at its contacts at any frequency.
+
+        Returns
+        -------
+        Dynamics
+            Response and dynamic stiffness at the contacts.
+        """
+        found = parts(*self.matrices, self.springs, self.dashpots)
+        return Dynamics(found, len(self.dof_names), len(self.contacts))
+
+    def enveloping(self, wavenumber: NumberArray) -> NumberArray:
+        """Share of a wave of the profile that each contact follows.
+
+        Parameters
+        ----------
+        wavenumber : ndarray, shape (wave,)
+            Wavenumber of the profile [rad/m]; may be complex.
+
+        Returns
+        -------
+        ndarray, shape (wave, contact)
+            1 for contacts that see one point of the profile; see `Contact.enveloping`.
+        """
+        return np.stack([contact.enveloping(wavenumber) for contact in self.contacts], axis=1)
+
+    @property
+    def held_stiffness(self) -> FloatArray:
+        """Stiffness with the guideway held still, rigid contacts left out [N/m]."""
+        return self._held()[0].constant
+
+    def _held(self) -> tuple[Matrices, FloatArray, Matrices]:
+        mass, damping, stiffness, contact_map = self.matrices
+        return held(Matrices(stiffness, damping, mass), contact_map, self.springs, self.dashpots)
+
+
+def require_vehicle(vehicle: object) -> None:
+    """Refuse what is no vehicle.
+
+    Parameters
+    ----------
+    vehicle : object
+        What was given.
+
+    Raises
+    ------
+    ValueError
+        If it is no `Vehicle`.
+    """
+    with checking() as check:
+        if not isinstance(vehicle, Vehicle):
+            check.refuse("vehicle", f"must be a Vehicle, got {shown(vehicle)}")
+
+
+def _names(check: Checks, names: Sequence[str]) -> tuple[str, ...]:
+    listed = check.listed("dof_names", names, str)
+    if len(set(listed)) < len(listed):
+        check.refuse("dof_names", "must be different names")
+    return listed
+
+
+def _check_definite(check: Checks, name: str, matrix: object, *, strictly: bool) -> None:
+    array = np.asarray(matrix, float)
+    scale = np.abs(array).max(initial=0.0)
+    if not np.allclose(array, array.T, rtol=0, atol=1e-9 * scale):
+        check.refuse(name, "must be a symmetric matrix")
+        return
+    # Translations and rotations differ in scale: judge the matrix with its diagonal brought to one.
+    diagonal = np.sqrt(np.abs(np.diag(array)))
+    diagonal[diagonal == 0] = np.sqrt(scale) if scale else 1.0
+    smallest = float(np.linalg.eigvalsh(array / np.outer(diagonal, diagonal)).min())
+    if smallest < (1e-12 if strictly else -1e-9):
+        kind = "positive definite" if strictly else "positive semidefinite"
+        check.refuse(name, f"must be {kind}, got a smallest scaled eigenvalue of {smallest:.3g}")
+
+
+def _check_free(check: Checks, vehicle: Vehicle) -> None:
+    """Demand that moving the vehicle down moves every contact as much, and strains nothing within."""
+    _, damping, stiffness, contact_map = vehicle.matrices
+    down = np.asarray(vehicle.vertical)
+    if not np.allclose(contact_map @ down, 1.0, rtol=0, atol=1e-6):
+        check.refuse(
+            "contact_map", "times vertical must be 1: the vehicle moves down by one metre, and so do its contacts"
+        )
+    for name, matrix in (("stiffness", stiffness), ("damping", damping)):
+        if not np.allclose(matrix @ down, 0.0, rtol=0, atol=1e-6 * np.abs(matrix).max(initial=0.0)):
+            check.refuse(
+                name, "times vertical must be 0: moving the vehicle down as a whole strains nothing within"
+            )
+
+
+def _check_held(check: Checks, vehicle: Vehicle) -> None:
+    """Demand that every motion meets a stiffness, or is prescribed once by a rigid contact."""
+    motion = split(vehicle.matrices[3], np.isinf(vehicle.springs))
+    if motion is None:
+        check.refuse(
+            "contacts", "must not prescribe one motion twice, but rigid contacts of this vehicle do: leave one out"
+        )
+        return
+    stiffness = motion.free.T @ vehicle.held_stiffness @ motion.free
+    if not stiffness.size:
+        return
+    diagonal = np.sqrt(np.diag(stiffness))
+    diagonal[diagonal == 0] = 1.0
+    values, vectors = np.linalg.eigh(stiffness / np.outer(diagonal, diagonal))
+    if values[0] < 1e-12:
+        loose = np.abs(vectors[:, 0] / diagonal)
+        names = [vehicle.dof_names[motion.kept[n]] for n in np.flatnonzero(loose > 0.1 * loose.max())]
+        check.refuse(
+            "contacts",
+            f"must hold the vehicle up, but a motion of {', '.join(names)} meets no stiffness at all",
+        )
+
+
+def _check_carried(check: Checks, vehicle: Vehicle) -> None:
+    """Demand that weight rests on every contact."""
+    loads = vehicle.static_loads
+    for number in np.flatnonzero(~(loads > 0)).tolist():
+        at = vehicle.contacts[number]
+        check.refuse(
+            f"contacts[{number}]",
+            f"at {at.position:g} m ahead and {at.across:g} m to the left must carry weight, got a static load of "
+            f"{loads[number]:.6g} N: the vehicle would tip over its other contacts",
+        )
