@@ -7,6 +7,8 @@ import pytest
 from matplotlib.figure import Figure
 
 import movingfrf as mf
+from movingfrf._basics import wording
+from movingfrf._basics.welch import spectral_density
 from movingfrf.reports import plots
 
 
@@ -67,7 +69,7 @@ def test_an_interval_is_cut_out(result):
 
 
 def test_force_spectrum_integrates_to_the_variance(result):
-    frequency, density = plots.spectral_density(result.contact_force.values[:, 0], 1e-3)
+    frequency, density = spectral_density(result.contact_force.values[:, 0], 1e-3)
     # Windowing a record of four seconds costs some accuracy.
     variance = density.sum() * (frequency[1] - frequency[0])
     assert variance == pytest.approx(result.contact_force.values.var(), rel=0.25)
@@ -75,13 +77,13 @@ def test_force_spectrum_integrates_to_the_variance(result):
 
 def test_spectral_density_of_white_noise_is_flat_at_its_known_level():
     noise = np.random.default_rng(1).standard_normal(200_000)
-    _, density = plots.spectral_density(noise, 1e-3)
+    _, density = spectral_density(noise, 1e-3)
     assert density[5:-5].mean() == pytest.approx(2e-3, rel=0.02)  # one-sided: 2 σ² Δt
 
 
 def test_nothing_to_see_has_no_spectrum():
-    assert plots.spectral_density(np.full(1000, 7.0), 1e-3)[0].size == 0
-    assert plots.spectral_density(np.arange(3.0), 1e-3)[0].size == 0
+    assert spectral_density(np.full(1000, 7.0), 1e-3)[0].size == 0
+    assert spectral_density(np.arange(3.0), 1e-3)[0].size == 0
 
 
 def test_a_constant_looks_constant(result):
@@ -112,8 +114,8 @@ def test_a_contact_keeps_its_colour(result):
 
 
 def test_many_curves_are_thinned_to_the_first_the_last_and_some_between():
-    chosen = plots.shown(40)
-    assert len(chosen) == plots.MOST_CURVES
+    chosen = wording.evenly_spread(40)
+    assert len(chosen) == wording.MOST_CURVES
     assert (chosen[0], chosen[-1]) == (0, 39)
 
 

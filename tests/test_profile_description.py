@@ -10,10 +10,11 @@ import pytest
 import scipy.signal
 
 import movingfrf as mf
+from movingfrf._basics.welch import welch
 from movingfrf.commands.main import main
 from movingfrf.metrics.profile import as_dict
 from movingfrf.reports.profile import render
-from movingfrf.roughness.fitting import SMOOTHING_EDGES, welch
+from movingfrf.roughness.fitting import SMOOTHING_EDGES
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.roughness.fitting import fit_iso, welch
+from movingfrf._basics.welch import welch
+from movingfrf.roughness.fitting import fit_iso
 
 
 def fitted(spectrum, *, length=1000.0, step=0.05, seed=1):

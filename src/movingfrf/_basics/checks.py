@@ -10,22 +10,14 @@ from numbers import Real
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-import psutil
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from movingfrf._basics.arrays import FloatArray
 
 Kind = TypeVar("Kind")
-FloatArray = NDArray[np.floating[Any]]
-ComplexArray = NDArray[np.complexfloating[Any, Any]]
-# Real or complex.
-NumberArray = NDArray[np.inexact[Any]]
-IntArray = NDArray[np.integer[Any]]
-BoolArray = NDArray[np.bool_]
 
 # Physical quantities in SI units lie far inside these bounds; beyond them powers overflow.
 SMALLEST, LARGEST = 1e-20, 1e20
-
-# The share of the free memory that one computation may plan to take.
-MEMORY_SHARE = 0.8
 
 
 class Fault(NamedTuple):
@@ -85,15 +77,6 @@ def in_brackets(words: str, unit: str) -> str:
 def option(name: str) -> str:
     """Name an option as it is typed in Python and in a scenario, and as on the command line."""
     return f"`{name}` (on the command line --{name.replace('_', '-')})"
-
-
-def finite(value: Any) -> Any:
-    """Replace numbers that are not finite by None, in dicts and lists too: JSON knows no infinity."""
-    if isinstance(value, dict):
-        return {key: finite(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [finite(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 class Checks:
@@ -230,25 +213,3 @@ def checking() -> Iterator[Checks]:
     yield checks
     if checks.faults:
         raise ParameterError(checks.faults)
-
-
-def require_memory(needed: float, what: str) -> None:
-    """Refuse a computation that would not fit into the free memory.
-
-    Parameters
-    ----------
-    needed : float
-        Bytes that the computation takes at its peak.
-    what : str
-        The quantity that makes it large, with its value, for the message.
-
-    Raises
-    ------
-    ValueError
-        If `needed` exceeds four fifths of the free memory.
-    """
-    available = psutil.virtual_memory().available
-    if needed > MEMORY_SHARE * available:
-        raise ValueError(
-            f"{what} needs about {needed / 2**30:.3g} GiB of memory, but only {available / 2**30:.3g} GiB are free"
-        )

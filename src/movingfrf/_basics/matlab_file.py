@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 
 # What a file may unpack to: so many times its own size, or this many bytes if that is more. A damaged count or a
 # packed bomb claims more.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 
 
 def smooth_step(x: FloatArray) -> FloatArray:

@@ -19,6 +19,9 @@ NEVER = 1e-12
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
+# Curves in one figure beyond which nobody can tell one from another; the palette has as many colours.
+MOST_CURVES = 6
+
 
 def number(value: float, digits: int = 4) -> str:
     """Write a number for reading: significant digits, powers of ten only where they are shorter.
@@ -99,3 +102,28 @@ def time_step(result: xr.Dataset) -> float:
     """Step in time [s], without the rounding of a difference."""
     time = result.time.values
     return float(f"{time[1] - time[0]:.12g}")
+
+
+def evenly_spread(count: int, most: int = MOST_CURVES) -> list[int]:
+    """Which of `count` curves to draw: all, or `most` of them from the first to the last, evenly spread.
+
+    Parameters
+    ----------
+    count : int
+        Number of curves there are.
+    most : int
+        Number of curves that a figure bears.
+
+    Returns
+    -------
+    list of int
+        Their numbers.
+
+    Examples
+    --------
+    >>> evenly_spread(3), evenly_spread(64)
+    ([0, 1, 2], [0, 13, 25, 38, 50, 63])
+    """
+    if count <= most:
+        return list(range(count))
+    return [round(number) for number in np.linspace(0, count - 1, most).tolist()]

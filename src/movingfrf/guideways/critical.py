@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf.guideways.waves import Ratio, residue_sum
 
 # Wavenumbers looked at, per decade, over six decades; each refinement shrinks the bracket sixteenfold.

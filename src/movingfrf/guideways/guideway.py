@@ -6,7 +6,7 @@ from typing import Protocol
 
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import ComplexArray
+from movingfrf._basics.arrays import ComplexArray
 
 
 class Guideway(Protocol):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import ComplexArray
+from movingfrf._basics.arrays import ComplexArray
 
 
 @dataclass(frozen=True, slots=True)

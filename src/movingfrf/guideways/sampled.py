@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import ComplexArray, FloatArray, IntArray, checking
+from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
+from movingfrf._basics.checks import checking
 
 # Two speeds or offsets that differ by less than this share, or this many metres, are one.
 SAME_SHARE, SAME_PLACE = 1e-9, 1e-6

@@ -8,7 +8,8 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import Checks, ComplexArray, checking
+from movingfrf._basics.arrays import ComplexArray
+from movingfrf._basics.checks import Checks, checking
 from movingfrf.guideways.critical import first_stationary_velocity, speed_of_greatest_deflection
 from movingfrf.guideways.waves import Ratio, polynomial, residue_sum, total
 

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from movingfrf._basics.checks import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray, SolveError
+from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray
+from movingfrf._basics.checks import SolveError
 
 # Below this speed [m/s] the moving frame differs from the fixed one by rounding errors, while the roots that
 # run away to infinity as v → 0 (one per κⁿ that v alone keeps alive) begin to cost digits.

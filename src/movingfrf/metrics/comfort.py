@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import Checks, ComplexArray, FloatArray, checking, shown
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf.metrics.loads import check_coupled
 
 if TYPE_CHECKING:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import gammaln
 
-from movingfrf._basics.checks import FloatArray, IntArray, checking, shown
+from movingfrf._basics.arrays import FloatArray, IntArray
+from movingfrf._basics.checks import checking, shown
 
 # Spectral methods by name → the class of FLife that carries each out. Zhao and Baker's is not among them: below an
 # irregularity of 0.13 one of its weights turns negative, and with it the damage; just above, next to none is left.

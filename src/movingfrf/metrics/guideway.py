@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import ComplexArray, FloatArray, NumberArray, checking
+from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
+from movingfrf._basics.checks import checking
 from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import in_moving_frame, wavenumbers

@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import ComplexArray, FloatArray, checking
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.checks import checking
 from movingfrf.roughness.profile import Profile
 
 # Speed at which both indices are defined [m/s].

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import BoolArray, Checks, FloatArray, checking, require_memory
+from movingfrf._basics.arrays import BoolArray, FloatArray, require_memory
+from movingfrf._basics.checks import Checks, checking
 from movingfrf.results.labels import flaws
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import Checks, FloatArray, checking
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import Checks, checking
 from movingfrf.metrics.comfort import (
     CREST_LIMIT,
     MTVV_LIMIT,

@@ -7,11 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import ComplexArray, FloatArray, finite
+from movingfrf._basics.arrays import ComplexArray, FloatArray, finite
 from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.welch import FLAT
+from movingfrf._basics.wording import evenly_spread
 from movingfrf._basics.wording import paths as named
 from movingfrf.metrics.iri import AVERAGE, LONGEST_STEP, RUN_IN, iri
-from movingfrf.reports.plots import FLAT, shown
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
 from movingfrf.roughness.preparation import resampled, selected
 from movingfrf.roughness.profile import Profile
@@ -161,7 +162,7 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
         for same in alike
         if len(same) > 1
     ]
-    numbers = [alike[n][0] for n in shown(len(alike))]
+    numbers = [alike[n][0] for n in evenly_spread(len(alike))]
     described = selected(profile, paths=numbers) if len(numbers) < profile.paths else profile
     step = described.even_step(UNEVEN)
     if step is None:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from movingfrf._basics import wording
-from movingfrf._basics.checks import ComplexArray, FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.welch import FLAT, spectral_density
 from movingfrf._basics.wording import number
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.reports import plots
@@ -169,7 +170,7 @@ def of_loads(result: xr.Dataset, guideway: Guideway) -> list[Illustration]:
 
 def is_rough(result: xr.Dataset) -> bool:
     """Tell whether the road has any roughness to draw."""
-    return bool(np.ptp(result.roughness.values, axis=0).max() >= plots.FLAT)
+    return bool(np.ptp(result.roughness.values, axis=0).max() >= FLAT)
 
 
 def _road_figure(result: xr.Dataset) -> Illustration:
@@ -216,7 +217,9 @@ def _contact_offsets(result: xr.Dataset) -> list[float]:
 def _load_offsets(result: xr.Dataset) -> list[float]:
     """Distinct offsets from loads to points [m], some of them where there are many."""
     offsets = np.unique(np.round(result.point.values[:, None] - result["load"].values, 6)) + 0.0
-    return sorted((float(offsets[place]) for place in plots.shown(offsets.size)), key=lambda x: (abs(x), -x))
+    return sorted(
+        (float(offsets[place]) for place in wording.evenly_spread(offsets.size)), key=lambda x: (abs(x), -x)
+    )
 
 
 def _frf_figures(result: xr.Dataset, guideway: Guideway, offsets: list[float]) -> list[Illustration]:
@@ -248,7 +251,7 @@ def _frf_end(result: xr.Dataset, frf: Callable[[FloatArray, Sequence[float]], Co
     nyquist = 0.5 / step
     kept = max(FRF_BEYOND * truncation, FRF_LEAST) if 0 < truncation < nyquist else nyquist
     if "contact_force" in result:
-        spectra = (plots.spectral_density(deflection, step) for deflection in result.deflection.values.T)
+        spectra = (spectral_density(deflection, step) for deflection in result.deflection.values.T)
         ends = [plots.upper_end(*spectrum) for spectrum in spectra if spectrum[0].size]
         if ends:
             return min(max(ends), kept)
@@ -304,7 +307,7 @@ def _forces_figure(result: xr.Dataset) -> Illustration:
         if peak
         else "The road is smooth, so the forces stay at their static level."
     )
-    words += wording.some_of(result.sizes["contact"], plots.MOST_CURVES, "contacts")
+    words += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
     return illustrated("forces", "Contact forces", words, figure)
 
 
@@ -356,7 +359,7 @@ def _force_spectra_figure(result: xr.Dataset) -> Illustration:
         "variance). The lowest humps are, as a rule, the body on its suspension, higher ones the wheels on their "
         "tyres. The frequency axis covers 99.99 % of the variance."
     )
-    caption += wording.some_of(result.sizes["contact"], plots.MOST_CURVES, "contacts")
+    caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
     return illustrated("force-spectra", "Contact-force spectra", caption, figure)
 
 
@@ -376,7 +379,7 @@ def _deflections_figure(result: xr.Dataset) -> Illustration:
         f"road. The largest, {number(1e3 * float(deflection[place, contact]))} mm, occurs under contact {contact} "
         f"at {result.time.values[place]:.6g} s."
     )
-    caption += wording.some_of(result.sizes["contact"], plots.MOST_CURVES, "contacts")
+    caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
     return illustrated("deflections", "Deflections under the contacts", caption, figure)
 
 
@@ -410,7 +413,7 @@ def _prescribed_figure(result: xr.Dataset) -> Illustration:
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     plots.legend_above(plots.prescribed_forces(result, ax))
     caption = "The forces on the road, as prescribed; a force that is not zero at t = 0 is switched on there."
-    caption += wording.some_of(result.sizes["load"], plots.MOST_CURVES, "loads")
+    caption += wording.some_of(result.sizes["load"], wording.MOST_CURVES, "loads")
     return illustrated("prescribed", "Prescribed forces", caption, figure)
 
 
@@ -422,7 +425,7 @@ def _point_deflections_figure(result: xr.Dataset) -> Illustration:
         "Deflection of the road at points that travel with the loads, positive down. The road starts at rest: look "
         "for how far the first swing exceeds the level that follows."
     )
-    caption += wording.some_of(result.sizes["point"], plots.MOST_CURVES, "points")
+    caption += wording.some_of(result.sizes["point"], wording.MOST_CURVES, "points")
     return illustrated("deflections", "Deflections", caption, figure)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from movingfrf._basics import wording
 from movingfrf._basics.wording import is_never, number
 from movingfrf.metrics.measures import Measure
 from movingfrf.reports import plots
@@ -70,7 +71,7 @@ def measure_tables(result: xr.Dataset, found: Sequence[Measure], captions: Mappi
     list of Table
         In the order of the measures.
     """
-    drawn = set(plots.shown(result.sizes["contact"]))
+    drawn = set(wording.evenly_spread(result.sizes["contact"]))
     contacts = {f"contact {c.column}": c for c in plots.contact_curves(result, range(result.sizes["contact"]))}
     rows: dict[tuple[str, str], list[Measure]] = {}
     for measure in found:

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import ComplexArray, FloatArray
-from movingfrf.roughness.fitting import IsoFit, fit_iso, welch
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.welch import FEWEST_SAMPLES, FLAT, LONGEST_STRETCH, SEGMENTS, spectral_density, welch
+from movingfrf._basics.wording import evenly_spread
+from movingfrf.roughness.fitting import IsoFit, fit_iso
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES, IsoRoad
 
 if TYPE_CHECKING:
@@ -22,16 +24,8 @@ if TYPE_CHECKING:
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 INK, GREY = "#222222", "#6b6b6b"
 
-# Curves in one figure beyond which nobody can tell one from another.
-MOST_CURVES = len(PALETTE)
-
 # Buckets that a long record is cut into: more than a screen or a sheet of paper resolves.
 BUCKETS = 2000
-
-# Welch's method: half-overlapping segments of a record, and the longest segment [s] and [m]. The longest ones
-# resolve 0.1 Hz and, at 0.01 cycle/m, the longest waves of ISO 8608 twice over.
-SEGMENTS, LONGEST_SEGMENT, LONGEST_STRETCH = 8, 10.0, 250.0
-FEWEST_SAMPLES = 32
 
 # Orders of magnitude of a moving FRF that are drawn.
 FRF_RANGE = 1e-5
@@ -39,9 +33,6 @@ FRF_RANGE = 1e-5
 # Curves that differ by less than this share of their largest value lie on top of each other; motions whose root
 # mean squares differ by less than this share tell the same.
 COINCIDENT, ALIKE = 1e-6, 0.1
-
-# Below this share of its size a variation is rounding, below this elevation [m] a road is flat.
-ROUNDING, FLAT = 1e-9, 1e-12
 
 # Letters that fit beside each other into a legend above a figure, and what a curve's sign takes of them.
 LEGEND_WIDTH, LEGEND_KEY = 118, 7
@@ -112,31 +103,6 @@ def decimated(
         kept.update((int(first + bucket.argmin()), int(first + bucket.argmax())))
     places = sorted(kept)
     return x[places], y[places]
-
-
-def shown(count: int, most: int = MOST_CURVES) -> list[int]:
-    """Which of `count` curves to draw: all, or `most` of them from the first to the last, evenly spread.
-
-    Parameters
-    ----------
-    count : int
-        Number of curves there are.
-    most : int
-        Number of curves that a figure bears.
-
-    Returns
-    -------
-    list of int
-        Their numbers.
-
-    Examples
-    --------
-    >>> shown(3), shown(64)
-    ([0, 1, 2], [0, 13, 25, 38, 50, 63])
-    """
-    if count <= most:
-        return list(range(count))
-    return [round(number) for number in np.linspace(0, count - 1, most).tolist()]
 
 
 def telling(rms: FloatArray, units: Sequence[str], most: int) -> list[int]:
@@ -212,7 +178,7 @@ def contact_curves(result: xr.Dataset, contacts: Sequence[int] | None = None) ->
     result : xarray.Dataset
         What `simulate` returned.
     contacts : sequence of int, optional
-        Numbers of the contacts; by default all, or some of them where there are many (see `shown`).
+        Numbers of the contacts; by default all, or some of them where there are many (see `evenly_spread`).
 
     Returns
     -------
@@ -240,7 +206,7 @@ def point_curves(result: xr.Dataset, points: Sequence[int] | None = None) -> lis
     result : xarray.Dataset
         What `moving_loads` returned.
     points : sequence of int, optional
-        Numbers of the points; by default all, or some of them where there are many (see `shown`).
+        Numbers of the points; by default all, or some of them where there are many (see `evenly_spread`).
 
     Returns
     -------
@@ -258,7 +224,7 @@ def load_curves(result: xr.Dataset, loads: Sequence[int] | None = None) -> list[
     result : xarray.Dataset
         What `moving_loads` returned.
     loads : sequence of int, optional
-        Numbers of the loads; by default all, or some of them where there are many (see `shown`).
+        Numbers of the loads; by default all, or some of them where there are many (see `evenly_spread`).
 
     Returns
     -------
@@ -560,7 +526,7 @@ def foremost(result: xr.Dataset) -> list[int]:
     paths = np.unique(path)
     return [
         max(np.flatnonzero(path == paths[number]).tolist(), key=lambda contact: position[contact])
-        for number in shown(len(paths))
+        for number in evenly_spread(len(paths))
     ]
 
 
@@ -666,42 +632,6 @@ def frf_phase(
     return _finish_frf(ax, frequency, truncation)
 
 
-def spectral_density(values: FloatArray, time_step: float) -> tuple[FloatArray, FloatArray]:
-    """Estimate a one-sided power spectral density (Welch, Hann window, half overlap, means removed).
-
-    Parameters
-    ----------
-    values : ndarray, shape (time,)
-        Record, in any unit.
-    time_step : float
-        Step of the record [s].
-
-    Returns
-    -------
-    frequency : ndarray
-        Frequency [Hz], without zero; empty where the record is constant or has a few samples only.
-    density : ndarray
-        Power spectral density [unit²/Hz].
-
-    Examples
-    --------
-    >>> time = np.arange(20_000) * 1e-3
-    >>> frequency, density = spectral_density(3.0 * np.sin(2 * np.pi * 5.0 * time), 1e-3)
-    >>> variance = density.sum() * (frequency[1] - frequency[0])
-    >>> round(float(variance), 2), round(float(frequency[density.argmax()]), 1)
-    (4.5, 5.0)
-    """
-    from scipy.signal import welch as scipy_welch
-
-    count = len(values)
-    if count < FEWEST_SAMPLES or np.ptp(values) <= ROUNDING * np.abs(values).max():
-        return np.empty(0), np.empty(0)
-    longest = max(int(LONGEST_SEGMENT / time_step), FEWEST_SAMPLES)
-    length = min(max(2 * count // (SEGMENTS + 1), FEWEST_SAMPLES), longest, count)
-    frequency, density = scipy_welch(values, 1 / time_step, nperseg=length)
-    return frequency[1:], density[1:]
-
-
 def legend_above(ax: Axes) -> Axes:
     """Put the legend above the axes, where it hides no curve.
 
@@ -735,7 +665,7 @@ def _signed(place: float) -> str:
 
 def _curves(names: Sequence[str], chosen: Sequence[int] | None) -> list[Curve]:
     """Curves of the chosen columns; a column keeps its colour whatever else is chosen."""
-    usual = shown(len(names))
+    usual = evenly_spread(len(names))
     colours = {column: PALETTE[rank] for rank, column in enumerate(usual)}
     columns = usual if chosen is None else list(chosen)
     taken = {colours[column] for column in columns if column in colours}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from movingfrf._basics import wording
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import number, plain
 from movingfrf.metrics.measures import Measure
 from movingfrf.reports import illustrations, plots
@@ -217,7 +217,7 @@ def _forces(result: xr.Dataset) -> Illustration:
         "a frequency: where that curve is steep, the force comes from. The humps are the vibrations of the body "
         "and of the wheels; dips between them come from the wheelbase, by which some waves lift and others pitch."
     )
-    caption += wording.some_of(result.sizes["contact"], plots.MOST_CURVES, "contacts")
+    caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
     return illustrations.illustrated("forces", "Contact forces", caption, figure)
 
 
@@ -227,7 +227,7 @@ def _deflections(result: xr.Dataset) -> Illustration:
     caption = (
         "Amplitude spectral density of the dynamic deflection of the road under each contact, and shares below."
     )
-    caption += wording.some_of(result.sizes["contact"], plots.MOST_CURVES, "contacts")
+    caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
     return illustrations.illustrated("deflections", "Deflections", caption, figure)
 
 
@@ -241,7 +241,7 @@ def _motions(result: xr.Dataset) -> list[Illustration]:
         curves = [
             plots.Curve(int(dofs[n]), plots.readable(str(result.dof.values[dofs[n]])), plots.PALETTE[rank])
             for rank, n in enumerate(
-                plots.telling(result.acceleration_rms.values[dofs], [unit] * dofs.size, plots.MOST_CURVES)
+                plots.telling(result.acceleration_rms.values[dofs], [unit] * dofs.size, wording.MOST_CURVES)
             )
         ]
         figure = _figure(result, "acceleration", curves, 1.0, f"acceleration density [{unit}/s²/√Hz]")

@@ -9,7 +9,8 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from movingfrf._basics.checks import ComplexArray, FloatArray, IntArray, checking
+from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
+from movingfrf._basics.checks import checking
 from movingfrf._basics.smooth import smooth_step
 
 # What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the

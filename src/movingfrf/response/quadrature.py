@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray, SolveError
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import SolveError
 
 # Gauss points of a panel. Its integrals are exact for polynomials of degree 23.
 POINTS = 12

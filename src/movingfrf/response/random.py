@@ -21,7 +21,8 @@ from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
 import movingfrf.results.findings as find
-from movingfrf._basics.checks import Checks, ComplexArray, FloatArray, SolveError, checking, require_memory, shown
+from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
+from movingfrf._basics.checks import Checks, SolveError, checking, shown
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.version import VERSION
 from movingfrf.guideways.guideway import Guideway, require_guideway

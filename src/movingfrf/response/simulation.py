@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import movingfrf.results.findings as find
-from movingfrf._basics.checks import checking, require_memory
+from movingfrf._basics.arrays import require_memory
+from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.version import VERSION
 from movingfrf.guideways.guideway import Guideway, require_guideway

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from movingfrf._basics.checks import ComplexArray, FloatArray, SolveError
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.response.line import SpectralGrid

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from movingfrf._basics.checks import ComplexArray, FloatArray, SolveError
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.checks import SolveError
 from movingfrf.response.solve import Sample, System, unthreaded
 from movingfrf.vehicles.vehicle import Vehicle
 

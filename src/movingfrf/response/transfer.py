@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import movingfrf.results.findings as find
-from movingfrf._basics.checks import ComplexArray, FloatArray, SolveError, checking, require_memory
+from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
+from movingfrf._basics.checks import SolveError, checking
 from movingfrf._basics.version import VERSION
 from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.response.solve import System, chunk_for, joined, product, solve_contacts, unthreaded

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import ComplexArray, FloatArray, IntArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
 from movingfrf.response.line import SpectralGrid
 from movingfrf.response.solve import Sample, System, product, solve_contacts
 

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from movingfrf._basics.checks import finite
+from movingfrf._basics.arrays import finite
 from movingfrf.metrics.measures import Measure
 from movingfrf.results.labels import COUPLED, LOADED, flaws
 

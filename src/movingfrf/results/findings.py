@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import ComplexArray, FloatArray, ValidityWarning
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.checks import ValidityWarning
 
 # Share of the critical speed from which on it is worth a word.
 NEAR_CRITICAL = 0.8

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray, checking
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import checking
 from movingfrf.roughness.profile import Profile
 
 # Stations nearer to each other than this share of the smallest step count as one.

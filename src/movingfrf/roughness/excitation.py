@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.smooth import smooth_step, smooth_step_slope
 from movingfrf.roughness.profile import Profile
 

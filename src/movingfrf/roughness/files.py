@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray, ParameterError, checking, option, shown
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import ParameterError, checking, option, shown
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf
 from movingfrf.roughness.formats.base import Column, Format, Record

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES, REFERENCE_FREQUENCY, band_in_words, iso_class
 
 # Bands in which ISO 8608 smooths a spectrum [cycle/m]: octaves up to a centre of 1/32, thirds of octaves up to 1/4,
@@ -92,32 +92,6 @@ class IsoFit(NamedTuple):
         """
         fitted: FloatArray = self.roughness * (spatial_frequency / REFERENCE_FREQUENCY) ** -self.waviness
         return fitted
-
-
-def welch(elevation: FloatArray, step: float, *, segments: int = 8) -> tuple[FloatArray, FloatArray]:
-    """Estimate the one-sided spectrum of a uniformly sampled profile (Welch, Hann window, half overlap).
-
-    Parameters
-    ----------
-    elevation : ndarray, shape (distance,)
-        Elevation [m].
-    step : float
-        Distance between samples [m].
-    segments : int
-        Number of half-overlapping segments that the profile is cut into; each is freed of its linear trend.
-
-    Returns
-    -------
-    spatial_frequency : ndarray
-        Spatial frequency [cycle/m], without the lowest three lines: trend and window have taken from them.
-    density : ndarray
-        Spectral density [m³].
-    """
-    from scipy.signal import welch as scipy_welch
-
-    length = max(2 * len(elevation) // (segments + 1), 8)
-    n, density = scipy_welch(elevation, 1 / step, nperseg=min(length, len(elevation)), detrend="linear")
-    return n[3:], density[3:]
 
 
 def fit_iso(spatial_frequency: FloatArray, density: FloatArray) -> IsoFit:

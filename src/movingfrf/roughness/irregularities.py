@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import FloatArray, checking, require_memory, shown
+from movingfrf._basics.arrays import FloatArray, require_memory
+from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.smooth import smooth_step
 from movingfrf.roughness.profile import Profile
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray, ParameterError, checking, require_memory, shown
+from movingfrf._basics.arrays import FloatArray, require_memory
+from movingfrf._basics.checks import ParameterError, checking, shown
 from movingfrf._basics.smooth import smooth_step
 from movingfrf.roughness.profile import Profile
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import FloatArray, checking
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import checking
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline

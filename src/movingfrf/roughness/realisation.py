@@ -9,7 +9,8 @@ import numpy as np
 import scipy.fft
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import Checks, ComplexArray, FloatArray, checking, require_memory, shown
+from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
+from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.spectra.coherence import Coherence, presumed
 from movingfrf.roughness.spectra.iso import Spectrum

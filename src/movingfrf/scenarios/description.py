@@ -7,12 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from movingfrf._basics import wording
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.welch import welch
 from movingfrf.response.line import SpectralGrid
 from movingfrf.response.simulation import BYTES_PER_SAMPLE, spectral_grid
 from movingfrf.response.solve import joined, steady_state
 from movingfrf.results.findings import near_critical
-from movingfrf.roughness.fitting import fit_iso, welch
+from movingfrf.roughness.fitting import fit_iso
 from movingfrf.scenarios.roads import Road
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.vehicles.modes import Mode, vehicle_modes

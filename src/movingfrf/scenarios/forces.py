@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray, checking, shown
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.smooth import smooth_step
 
 # Sine waves that one force may be made of.

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import movingfrf.results.findings as find
-from movingfrf._basics.checks import FloatArray, SolveError, checking, require_memory
+from movingfrf._basics.arrays import FloatArray, require_memory
+from movingfrf._basics.checks import SolveError, checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.version import VERSION
 from movingfrf.results.labels import COUPLED, labelled

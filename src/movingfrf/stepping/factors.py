@@ -7,7 +7,8 @@ import scipy.sparse as sparse
 from scipy.linalg import lapack
 from scipy.sparse.linalg import splu
 
-from movingfrf._basics.checks import FloatArray, SolveError
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import SolveError
 
 # Bands wider than this are left to the sparse solver.
 WIDEST = 64

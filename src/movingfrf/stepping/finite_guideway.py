@@ -11,7 +11,8 @@ import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import Checks, FloatArray, IntArray, checking, shown
+from movingfrf._basics.arrays import FloatArray, IntArray
+from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf._basics.smooth import smooth_step
 from movingfrf.guideways.track import EulerBernoulliBeam, Foundation, OnMass, ShearLayer, Spring, Track
 from movingfrf.stepping.factors import is_definite

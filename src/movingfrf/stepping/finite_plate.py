@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.sparse as sparse
 
-from movingfrf._basics.checks import FloatArray, checking, shown
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import EulerBernoulliBeam, ShearLayer, Spring, Track

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import FloatArray, ValidityWarning, checking, require_memory
+from movingfrf._basics.arrays import FloatArray, require_memory
+from movingfrf._basics.checks import ValidityWarning, checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import Track

@@ -15,7 +15,8 @@ import numpy as np
 import scipy.sparse as sparse
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import FloatArray, IntArray, SolveError
+from movingfrf._basics.arrays import FloatArray, IntArray
+from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.stepping.factors import BandSolver, SparseSolver, bands_of, half_width, indefinite, solver
 from movingfrf.stepping.finite_guideway import SAME_PLACE, CubicRows, FiniteGuideway

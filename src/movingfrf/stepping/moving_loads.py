@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import FloatArray, checking, require_memory
+from movingfrf._basics.arrays import FloatArray, require_memory
+from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.version import VERSION
 from movingfrf.results.labels import LOADED, labelled

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigvalsh
 
-from movingfrf._basics.checks import Checks, FloatArray
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import Checks
 from movingfrf.stepping.factors import solver
 from movingfrf.stepping.finite_guideway import SAME_PLACE, FiniteGuideway
 from movingfrf.stepping.schemes import Scheme

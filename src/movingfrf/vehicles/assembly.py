@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from movingfrf._basics.checks import Checks, FloatArray, checking
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import Checks, checking
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.vehicle import Vehicle
 

@@ -10,7 +10,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import Checks, FloatArray, checking, require_memory
+from movingfrf._basics.arrays import FloatArray, require_memory
+from movingfrf._basics.checks import Checks, checking
 from movingfrf.vehicles.vehicle import Vehicle
 
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from movingfrf._basics.checks import NumberArray, checking
+from movingfrf._basics.arrays import NumberArray
+from movingfrf._basics.checks import checking
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

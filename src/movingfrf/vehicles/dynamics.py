@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.linalg
 
-from movingfrf._basics.checks import BoolArray, ComplexArray, FloatArray, IntArray
+from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 
 # Above this condition number of the modal matrix (a defective or nearly defective mode) the modes no longer
 # carry the digits and each frequency is solved directly.

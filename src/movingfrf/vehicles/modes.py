@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import ComplexArray, FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf.vehicles.dynamics import state_matrix
 from movingfrf.vehicles.vehicle import Vehicle
 

@@ -9,7 +9,8 @@ from typing import NotRequired, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import Checks, ComplexArray, FloatArray, NumberArray, checking, shown
+from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
+from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.dynamics import Dynamics, Matrices, held, parts, split
 

@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray, option
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import option
 from movingfrf.roughness.formats.base import Column, Record, chosen, metres, scaled
 
 # What the package itself calls them.

@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from movingfrf._basics.checks import FloatArray, option
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import option
 from movingfrf.roughness.profile import Profile
 
 # A column of a file: its name, or its number counted from 0.

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf.roughness.formats.base import (
     Column,
     Format,

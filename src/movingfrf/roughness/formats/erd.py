@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats.base import Column, Format, Record, chosen, contents, listed, metres, scaled
 from movingfrf.roughness.profile import Profile

@@ -9,7 +9,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf.roughness.formats.base import Column, Format, Record, contents
 
 # The ellipsoid of WGS 84: half its equatorial diameter [m] and its squared eccentricity.

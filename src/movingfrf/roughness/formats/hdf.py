@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.matlab_file import UNPACKED, UNPACKED_LEAST
 from movingfrf.roughness.formats.arrays import Array
 

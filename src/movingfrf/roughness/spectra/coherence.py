@@ -8,7 +8,8 @@ from typing import Protocol
 import numpy as np
 from scipy.special import gamma, kv
 
-from movingfrf._basics.checks import FloatArray, checking
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import checking
 from movingfrf.roughness.spectra.iso import LARGEST_WAVINESS, IsoRoad, Spectrum
 
 # Below it the Bessel function of the largest waviness would overflow; γ differs from 1 by rounding alone there.

@@ -8,7 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from movingfrf._basics.checks import Checks, FloatArray, checking
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import Checks, checking
 
 # Spatial frequency at which ISO 8608 states the roughness [cycle/m].
 REFERENCE_FREQUENCY = 0.1

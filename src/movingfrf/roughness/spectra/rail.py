@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray, checking, shown
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import checking, shown
 from movingfrf.roughness.spectra.iso import BandLimited, band_in_words, checked_band, power_integral
 
 # Wavelengths between which the FRA's forms hold: 5 and 1000 feet.

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.checks import FloatArray, checking
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import checking
 from movingfrf.roughness.spectra.iso import BandLimited, Spectrum, band_in_words
 
 # Amplitude to which levels of roughness refer [m].

@@ -23,7 +23,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from movingfrf._basics.checks import FloatArray, SolveError, ValidityWarning
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import SolveError, ValidityWarning
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.scenarios.scenario import Scenario, parse_scenario
 from movingfrf.studies.comparison.methods import (

@@ -6,7 +6,7 @@ import json
 import math
 from typing import Any
 
-from movingfrf._basics.checks import finite
+from movingfrf._basics.arrays import finite
 from movingfrf.studies.comparison.comparison import Comparison, ratios
 
 

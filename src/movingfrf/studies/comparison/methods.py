@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray, nearest
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import nearest
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import EulerBernoulliBeam, OnMass, Track

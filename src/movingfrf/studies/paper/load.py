@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from threadpoolctl import threadpool_limits
 
-from movingfrf._basics.checks import ComplexArray, FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.wording import number
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.reports import plots

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from scipy.sparse.linalg import splu
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import number
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.sampled import SampledGuideway

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from movingfrf._basics.checks import ComplexArray, FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.wording import number
 from movingfrf.guideways.track import Spring, Track
 from movingfrf.reports import plots

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from movingfrf._basics.checks import ComplexArray, FloatArray, ValidityWarning
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.checks import ValidityWarning
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.sampled import SampledGuideway

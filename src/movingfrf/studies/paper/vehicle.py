@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from movingfrf._basics.checks import FloatArray
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.welch import spectral_density, welch
 from movingfrf._basics.wording import number
 from movingfrf.reports import plots
 from movingfrf.reports.page import Column
-from movingfrf.roughness.fitting import fit_iso, welch
+from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.spectra.iso import IsoRoad
 from movingfrf.studies.comparison.comparison import TARGETS
 from movingfrf.studies.comparison.methods import elements
@@ -160,7 +161,7 @@ def spectra(study: Study) -> Outcome:
 
 def _densities(ax: Axes, values: FloatArray, result: xr.Dataset, scale: float, name: str) -> None:
     for column, (line, wheel) in enumerate(((BLUE, "front"), (ORANGE, "rear"))):
-        frequency, density = plots.spectral_density(values[:, column], result.attrs["time_step"])
+        frequency, density = spectral_density(values[:, column], result.attrs["time_step"])
         drawn = frequency <= 100
         curve(ax, frequency[drawn], scale * np.sqrt(density[drawn]), line, wheel)
     ax.set(xlabel="frequency [Hz]", ylabel=name, xlim=(0, 100))
@@ -249,7 +250,7 @@ def accelerations(study: Study) -> Outcome:
 
     spectrum, axes = canvas(2, 2, 4.2)
     for n, ax in enumerate(axes):
-        frequency, density = plots.spectral_density(found.acceleration.values[:, n], found.attrs["time_step"])
+        frequency, density = spectral_density(found.acceleration.values[:, n], found.attrs["time_step"])
         drawn = frequency <= 100
         curve(ax, frequency[drawn], np.sqrt(density[drawn]), BLUE)
         unit = found.dof_unit.values[n]

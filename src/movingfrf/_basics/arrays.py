@@ -1,0 +1,51 @@
+"""Arrays: their types, and whether there is room for them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import psutil
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.floating[Any]]
+ComplexArray = NDArray[np.complexfloating[Any, Any]]
+# Real or complex.
+NumberArray = NDArray[np.inexact[Any]]
+IntArray = NDArray[np.integer[Any]]
+BoolArray = NDArray[np.bool_]
+
+# The share of the free memory that one computation may plan to take.
+MEMORY_SHARE = 0.8
+
+
+def finite(value: Any) -> Any:
+    """Replace numbers that are not finite by None, in dicts and lists too: JSON knows no infinity."""
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def require_memory(needed: float, what: str) -> None:
+    """Refuse a computation that would not fit into the free memory.
+
+    Parameters
+    ----------
+    needed : float
+        Bytes that the computation takes at its peak.
+    what : str
+        The quantity that makes it large, with its value, for the message.
+
+    Raises
+    ------
+    ValueError
+        If `needed` exceeds four fifths of the free memory.
+    """
+    available = psutil.virtual_memory().available
+    if needed > MEMORY_SHARE * available:
+        raise ValueError(
+            f"{what} needs about {needed / 2**30:.3g} GiB of memory, but only {available / 2**30:.3g} GiB are free"
+        )
