@@ -672,9 +672,9 @@ FAULTS = [
         "shared.swapaxes(1, 2)) > 9 + SEMI",
     ),
     Fault("damping always blamed", "response/random.py", "NEXT_TO_NONE = 1e-9", "NEXT_TO_NONE = 1e9"),
-    Fault("history taken for a spectrum", "metrics/random.py", '"contact_force_density" not in', '"" in'),
+    Fault("history taken for a spectrum", "metrics/fatigue.py", '"contact_force_density" not in', '"" in'),
     Fault("threads that wait", "response/transfer.py", "with unthreaded(contacts):", "with unthreaded(1):"),
-    Fault("wide trapezoids", "metrics/random.py", "(0.5 * (gaps[1:]", "(1.0 * (gaps[1:]"),
+    Fault("wide trapezoids", "metrics/fatigue.py", "(0.5 * (gaps[1:]", "(1.0 * (gaps[1:]"),
     Fault("coarse panels", "response/quadrature.py", "UNRESOLVED = 1e-3", "UNRESOLVED = 1e3"),
     Fault("panels that overlap", "response/quadrature.py", "= low[~rough], high", "= low[~rough] - 0.01, high"),
     Fault(

@@ -14,7 +14,7 @@ import xarray as xr
 from rich.console import Console
 
 from movingfrf.commands.main import _cell, _head, _print_columns, main
-from movingfrf.metrics.measures import Measure
+from movingfrf.results.labels import Measure
 from tests.test_scenario import LOADS, edited
 
 SHORT = edited(duration=2.0)

@@ -10,7 +10,7 @@ import xarray as xr
 
 import movingfrf as mf
 from movingfrf.commands.main import main
-from movingfrf.metrics.random import random_measures
+from movingfrf.metrics.measures import random_measures
 from movingfrf.reports.random import drawing_frequencies, paths, render
 from tests.helpers import DAMPED, FULL_TRUCK
 from tests.test_scenario import LOADS, TEMPLATE

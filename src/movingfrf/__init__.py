@@ -85,7 +85,7 @@ _WHERE = {
     "moving_loads": "response.simulation",
     "transfer": "response.transfer",
     "random_response": "response.random",
-    "spectral_fatigue": "metrics.random",
+    "spectral_fatigue": "metrics.fatigue",
     "Scenario": "scenarios.scenario",
     "ScenarioError": "scenarios.scenario",
     "read_scenario": "scenarios.scenario",

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.metrics.measures import assess
-from movingfrf.metrics.random import random_measures
+from movingfrf.metrics.measures import assess, random_measures
 from movingfrf.results.labels import COUPLED, labelled
 from tests.helpers import DAMPED
 

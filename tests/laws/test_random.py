@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 import movingfrf as mf
 from movingfrf.metrics.fatigue import METHODS
-from movingfrf.metrics.random import random_measures
+from movingfrf.metrics.measures import random_measures
 from movingfrf.response.quadrature import resolved
 from movingfrf.response.random import peak_factor
 from movingfrf.response.solve import solve_contacts

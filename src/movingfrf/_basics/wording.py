@@ -3,13 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # Numbers of paths that are written out.
 MOST_PATHS = 6
@@ -84,24 +79,6 @@ def paths(numbers: Sequence[int]) -> str:
 def some_of(total: int, most: int, what: str) -> str:
     """Say in a caption that not everything is drawn."""
     return f" {most} of {total} {what} are drawn; the tables list all." if total > most else ""
-
-
-def speed(result: xr.Dataset) -> str:
-    """Write the speed in both units."""
-    speed = result.attrs["speed"]
-    # Unbreakable spaces: a number stays with its unit.
-    return f"{plain(speed)}\u00a0m/s ({plain(round(3.6 * speed, 6))}\u00a0km/h)"
-
-
-def duration(result: xr.Dataset) -> float:
-    """Duration of the record [s], free of the rounding of its last time."""
-    return float(f"{result.sizes['time'] * time_step(result):.12g}")
-
-
-def time_step(result: xr.Dataset) -> float:
-    """Step in time [s], without the rounding of a difference."""
-    time = result.time.values
-    return float(f"{time[1] - time[0]:.12g}")
 
 
 def evenly_spread(count: int, most: int = MOST_CURVES) -> list[int]:

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
-    from movingfrf.metrics.measures import Measure
     from movingfrf.reports.page import Table as TableForReading
+    from movingfrf.results.labels import Measure
     from movingfrf.roughness.files import ReadProfile
 
 
@@ -252,7 +252,7 @@ def random(
     stages = _Stages()
     with stages:
         stages.report("loading", 0.0)
-        from movingfrf.metrics.random import random_measures
+        from movingfrf.metrics.measures import random_measures
         from movingfrf.reports.random import drawing_frequencies, paths, render
         from movingfrf.response.random import random_response
         from movingfrf.results.files import replacing, save, summary

@@ -51,6 +51,9 @@ SEATED = {
     "feet z": 0.4,
 }
 
+# Weighting of ISO 2631-1 by the unit of a degree of freedom: vertical vibration of a seat or floor, and rotation.
+WEIGHTING_OF = {"m": "Wk", "rad": "We"}
+
 
 class Weighting(NamedTuple):
     """A frequency weighting: frequencies [Hz] and quality factors of its four filters, and its gain."""

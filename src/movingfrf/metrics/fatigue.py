@@ -5,13 +5,19 @@ from __future__ import annotations
 from importlib import import_module
 from numbers import Real
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import gammaln
 
 from movingfrf._basics.arrays import FloatArray, IntArray
-from movingfrf._basics.checks import checking, shown
+from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf.results.labels import RANDOM_QUANTITIES
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 # Spectral methods by name → the class of FLife that carries each out. Zhao and Baker's is not among them: below an
 # irregularity of 0.13 one of its weights turns negative, and with it the damage; just above, next to none is left.
@@ -294,3 +300,62 @@ def _extra(module: str) -> ModuleType:
         return import_module(module)
     except ModuleNotFoundError:
         raise ValueError(f"this measure needs {module}: pip install 'movingfrf[fatigue]'") from None
+
+
+def spectral_fatigue(
+    result: xr.Dataset, quantity: str, *, slope: float, strength: float = 1.0, method: str = "dirlik"
+) -> xr.DataArray:
+    """Fatigue damage per second that a random response does, from its spectral density.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What `random_response` returned.
+    quantity : str
+        `contact_force`, `deflection`, `motion`, `acceleration` or `roughness`.
+    slope : float
+        Exponent m of the S-N curve N = C a^−m in the amplitude a.
+    strength : float
+        The curve's C: cycles to failure times amplitude to the power of the exponent [unit^m].
+    method : str
+        How rainflow cycles are estimated from a spectrum: `dirlik`, `tovo_benasciutti`, `single_moment` or
+        `narrow_band`; see `spectral_damage`.
+
+    Returns
+    -------
+    xarray.DataArray
+        Damage per second [1/s] of every contact or degree of freedom.
+
+    Raises
+    ------
+    ValueError
+        If the result is none of `random_response`, there is no such quantity or method, a value is not positive,
+        the method does not hold for a density, or the extra `fatigue` is not installed.
+    """
+    with checking() as check:
+        check_random(check, result)
+        if not (isinstance(quantity, str) and quantity in RANDOM_QUANTITIES):
+            check.refuse("quantity", f"must be one of {', '.join(RANDOM_QUANTITIES)}, got {shown(quantity)}")
+    frequency, density = result.frequency.values, result[f"{quantity}_density"].values
+    if "bandwidth" in result.coords:
+        # The damage is integrated by trapezoids: so weighted they give the moments of the Gauss points.
+        gaps = np.diff(frequency, prepend=frequency[0], append=frequency[-1])
+        density = density * (result.bandwidth.values / (0.5 * (gaps[1:] + gaps[:-1])))[:, None]
+    damage = [
+        spectral_damage(frequency, column, slope=slope, strength=strength, method=method) for column in density.T
+    ]
+    found = result[f"{quantity}_rms"].copy(data=damage).rename(f"{quantity}_damage")
+    found.attrs = {
+        "units": "1/s",
+        "long_name": f"fatigue damage per second of the {RANDOM_QUANTITIES[quantity][2]}",
+        "slope": float(slope),
+        "strength": float(strength),
+        "method": method,
+    }
+    return found
+
+
+def check_random(check: Checks, result: object) -> None:
+    """Refuse what is not the response to a random road."""
+    if "contact_force_density" not in getattr(result, "data_vars", ()):
+        check.refuse("result", "must be the response to a random road, from `random_response`")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,13 +13,14 @@ from movingfrf.metrics.comfort import (
     CREST_LIMIT,
     MTVV_LIMIT,
     VDV_LIMIT,
+    WEIGHTING_OF,
     WEIGHTINGS,
     Comfort,
     check_weighting,
     samples_before,
     whole_body_vibration,
 )
-from movingfrf.metrics.fatigue import equivalent_amplitude
+from movingfrf.metrics.fatigue import check_random, equivalent_amplitude, spectral_fatigue
 from movingfrf.metrics.loads import (
     check_coupled,
     common_points,
@@ -28,6 +29,7 @@ from movingfrf.metrics.loads import (
     road_stress_factor,
     road_wear,
 )
+from movingfrf.results.labels import Measure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,16 +39,8 @@ CEBON, EISENMANN, CYCLES = "Cebon 1999", "Eisenmann 1975", "ASTM E1049"
 
 DEFLECTIONS = ("deflection", "static_deflection")
 
-
-class Measure(NamedTuple):
-    """One number about a result."""
-
-    quantity: str  # what was measured, and where
-    name: str  # which measure
-    value: float
-    units: str
-    standard: str = ""  # the standard or the source that defines it, where the name alone does not
-    note: str = ""  # what the standard makes of the value, or why there is none (nan)
+# Sources of what the names alone do not define.
+RICE, DAVENPORT, DIRLIK = "Rice 1945", "Davenport 1964", "Dirlik 1985"
 
 
 def measures(result: xr.Dataset) -> list[Measure]:
@@ -279,3 +273,76 @@ def _check_chosen(check: Checks, name: str, chosen: Sequence[object] | None, the
     for each in chosen or ():
         if each not in there:
             check.refuse(name, f"must be among {', '.join(map(str, there))}, got {each!r}")
+
+
+def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[Measure]:
+    """List the statistics of a random response.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What `random_response` returned.
+    slope : float, optional
+        Exponent m of an S-N curve; adds the steady amplitude that damages as much as each contact force.
+
+    Returns
+    -------
+    list of Measure
+        Per contact: static force, root mean square and expected peak (its largest value, not the largest
+        magnitude that `measures` calls the dynamic peak) of the dynamic one [N], its crossing rate
+        [1/s] and irregularity; of the total load the dynamic load coefficient, road stress factor, expected
+        largest value [N], how often [1/s] and for which share of the time it would turn tensile; static, root mean
+        square and peak deflection [m] with its crossing rate. Per degree of freedom: root mean square, expected
+        peak, crossing rate and weighted root mean square of the acceleration.
+
+    Raises
+    ------
+    ValueError
+        If the result is none of `random_response`, or the damage for a slope cannot be had; see `spectral_fatigue`.
+    """
+    with checking() as check:
+        check_random(check, result)
+    equivalent = None
+    if slope is not None:
+        equivalent = spectral_fatigue(result, "contact_force", slope=slope).values ** (1 / slope)
+    found: list[Measure] = []
+    for contact in result.contact.values.tolist():
+        at = result.isel(contact=contact)
+        load, peak = at.static_load.item(), at.contact_force_expected_peak.item()
+        coefficient = at.dynamic_load_coefficient.item()
+        force, total = f"contact {contact} force", f"contact {contact} load"
+        found += [
+            Measure(force, "static", load, "N"),
+            Measure(force, "rms", at.contact_force_rms.item(), "N"),
+            Measure(force, "expected peak", peak, "N", DAVENPORT),
+            Measure(force, "crossing rate", at.contact_force_crossing_rate.item(), "1/s", RICE),
+            Measure(force, "irregularity", at.contact_force_irregularity.item(), "1", RICE),
+            Measure(total, "dynamic load coefficient", coefficient, "1", CEBON),
+            Measure(total, "road stress factor", float(road_stress_factor(coefficient)), "1", EISENMANN),
+            Measure(total, "expected largest", load + peak, "N", DAVENPORT),
+            Measure(total, "lift-offs", at.lift_off_rate.item(), "1/s", RICE),
+            Measure(total, "share lifted off", at.lift_off_share.item(), "1"),
+        ]
+        if equivalent is not None:
+            amplitude = float(equivalent[contact])
+            found.append(Measure(force, "damage-equivalent amplitude at 1 Hz", amplitude, "N", DIRLIK))
+    for contact in result.contact.values.tolist():
+        at = result.isel(contact=contact)
+        quantity = f"contact {contact} deflection"
+        found += [
+            Measure(quantity, "static", at.static_deflection.item(), "m"),
+            Measure(quantity, "rms", at.deflection_rms.item(), "m"),
+            Measure(quantity, "expected peak", at.deflection_expected_peak.item(), "m", DAVENPORT),
+            Measure(quantity, "crossing rate", at.deflection_crossing_rate.item(), "1/s", RICE),
+        ]
+    for dof in range(result.sizes["dof"]):
+        at = result.isel(dof=dof)
+        quantity, unit = f"{at.dof.item()} acceleration", f"{at.dof_unit.item()}/s²"
+        weighting = WEIGHTING_OF[at.dof_unit.item()]
+        found += [
+            Measure(quantity, "rms", at.acceleration_rms.item(), unit),
+            Measure(quantity, "expected peak", at.acceleration_expected_peak.item(), unit, DAVENPORT),
+            Measure(quantity, "crossing rate", at.acceleration_crossing_rate.item(), "1/s", RICE),
+            Measure(quantity, f"weighted rms ({weighting})", at.weighted_acceleration.item(), unit, "ISO 2631-1"),
+        ]
+    return found

@@ -13,6 +13,7 @@ from movingfrf.guideways.guideway import Guideway
 from movingfrf.metrics.measures import measures
 from movingfrf.reports import illustrations, plots
 from movingfrf.reports.page import Column, Row, Setting, Table, measure_tables, page
+from movingfrf.results.labels import duration_of, speed_in_words, time_step_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,8 +74,8 @@ def _coupled_summary(result: xr.Dataset) -> str:
     weight = number(1e-3 * float(result.static_load.values.sum()))
     return (
         f"A vehicle of {weight} kN with {wording.count(contacts, 'contact')} and "
-        f"{wording.count(dofs, 'degree of freedom', 'degrees of freedom')} travels at {wording.speed(result)} for "
-        f"{plain(wording.duration(result))} s over a {road}; contact forces, deflections of "
+        f"{wording.count(dofs, 'degree of freedom', 'degrees of freedom')} travels at {speed_in_words(result)} for "
+        f"{plain(duration_of(result))} s over a {road}; contact forces, deflections of "
         "the road and motions of the vehicle were computed together, in the frequency domain, with moving "
         "frequency response functions (moving FRFs)."
     )
@@ -83,14 +84,14 @@ def _coupled_summary(result: xr.Dataset) -> str:
 def _loaded_summary(result: xr.Dataset) -> str:
     return (
         f"{wording.count(result.sizes['load'], 'prescribed force')} on a road, travelling at "
-        f"{wording.speed(result)} for {plain(wording.duration(result))} s from rest at t = 0; the deflection at "
+        f"{speed_in_words(result)} for {plain(duration_of(result))} s from rest at t = 0; the deflection at "
         f"{wording.count(result.sizes['point'], 'point')} travelling along was computed in the frequency domain "
         "with moving frequency response functions (moving FRFs)."
     )
 
 
 def _settings(result: xr.Dataset) -> list[Setting]:
-    attrs, duration, step = result.attrs, wording.duration(result), wording.time_step(result)
+    attrs, duration, step = result.attrs, duration_of(result), time_step_of(result)
     critical = attrs.get("critical_speed", float("inf"))
     speed = attrs["speed"]
     found = [
@@ -125,7 +126,7 @@ def _truncation_settings(result: xr.Dataset) -> list[Setting]:
         return []
     truncation, coupled = result.attrs["truncation"], "contact_force" in result
     if not coupled:
-        if truncation >= 0.5 / wording.time_step(result):
+        if truncation >= 0.5 / time_step_of(result):
             return [Setting("Truncation", "none", "every frequency of the record is kept")]
         return [Setting("Truncation", f"{plain(truncation)} Hz", "the response beyond it is left out")]
     error = result.attrs.get("truncation_error")

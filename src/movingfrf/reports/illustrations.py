@@ -16,6 +16,7 @@ from movingfrf._basics.welch import FLAT, spectral_density
 from movingfrf._basics.wording import number
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.reports import plots
+from movingfrf.results.labels import duration_of, time_step_of
 from movingfrf.roughness.fitting import fit_iso
 
 if TYPE_CHECKING:
@@ -247,7 +248,7 @@ def _frf_figures(result: xr.Dataset, guideway: Guideway, offsets: list[float]) -
 
 def _frf_end(result: xr.Dataset, frf: Callable[[FloatArray, Sequence[float]], ComplexArray]) -> float:
     """Highest frequency to draw [Hz]: where deflections under contacts end, a truncation, or the FRF itself."""
-    step, truncation = wording.time_step(result), result.attrs.get("truncation", 0.0)
+    step, truncation = time_step_of(result), result.attrs.get("truncation", 0.0)
     nyquist = 0.5 / step
     kept = max(FRF_BEYOND * truncation, FRF_LEAST) if 0 < truncation < nyquist else nyquist
     if "contact_force" in result:
@@ -321,7 +322,7 @@ def _peak_force(result: xr.Dataset) -> tuple[float, float, int]:
 
 def _zoom_figures(result: xr.Dataset) -> list[Illustration]:
     """Draw the forces around the largest one, where the record is long enough for that to add anything."""
-    duration = wording.duration(result)
+    duration = duration_of(result)
     peak, instant, contact = _peak_force(result)
     if duration <= 2 * ZOOM or not peak:
         return []

@@ -9,9 +9,9 @@ import numpy as np
 
 from movingfrf._basics import wording
 from movingfrf._basics.wording import is_never, number
-from movingfrf.metrics.measures import Measure
 from movingfrf.reports import plots
 from movingfrf.reports.illustrations import Illustration
+from movingfrf.results.labels import Measure
 
 if TYPE_CHECKING:
     import xarray as xr

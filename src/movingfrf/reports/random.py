@@ -11,10 +11,10 @@ import numpy as np
 from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import number, plain
-from movingfrf.metrics.measures import Measure
 from movingfrf.reports import illustrations, plots
 from movingfrf.reports.illustrations import Illustration
 from movingfrf.reports.page import Setting, measure_tables, page
+from movingfrf.results.labels import Measure, speed_in_words
 from movingfrf.roughness.spectra.iso import IsoRoad
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def render(
     return page(
         title=title,
         version=result.attrs["movingfrf"],
-        summary=f"A vehicle of {weight} kN with {contacts} travels at {wording.speed(result)} over a random road: "
+        summary=f"A vehicle of {weight} kN with {contacts} travels at {speed_in_words(result)} over a random road: "
         "the stationary response, computed from the road's spectrum in closed form. No road was realised: root "
         "mean squares, crossing rates and expected peaks are those of all roads with this spectrum.",
         settings=_settings(result),

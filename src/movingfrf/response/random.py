@@ -26,6 +26,7 @@ from movingfrf._basics.checks import Checks, SolveError, checking, shown
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.version import VERSION
 from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.metrics.comfort import WEIGHTING_OF
 from movingfrf.metrics.loads import load_coefficient
 from movingfrf.response.quadrature import Lines, Unresolved, resolved
 from movingfrf.response.solve import System, joined, steady_state
@@ -59,9 +60,6 @@ PEAK_POINTS = 400
 # From which on it is worth a word: expected lift-offs within the exposure, share of the time lifted off, and share
 # of a contact force's variance in the highest tenth of the frequencies.
 LIFT_OFFS, LIFTED_OFF, AT_THE_END = 1.0, 1e-3, 0.01
-
-# Weighting of ISO 2631-1 by the unit of a degree of freedom: vertical vibration of a seat or floor, and rotation.
-WEIGHTING_OF = {"m": "Wk", "rad": "We"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

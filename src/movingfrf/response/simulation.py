@@ -12,14 +12,13 @@ import movingfrf.results.findings as find
 from movingfrf._basics.arrays import require_memory
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
-from movingfrf._basics.version import VERSION
 from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.response.histories import histories
 from movingfrf.response.line import SpectralGrid
 from movingfrf.response.solve import CHUNK, couple, joined, steady_state
 from movingfrf.response.stability import along_the_axis, require_stable
 from movingfrf.response.truncation import bands, first_negligible, influence, middles, truncation_error
-from movingfrf.results.labels import COUPLED, LOADED, labelled
+from movingfrf.results.labels import COUPLED, LOADED, labelled, provenance
 from movingfrf.roughness.excitation import excite
 from movingfrf.roughness.profile import Profile
 from movingfrf.vehicles.journey import Journey
@@ -175,7 +174,7 @@ def simulate(
         "roughness": seen,
     }
     attributes = {
-        **_provenance("Coupled response of a vehicle and a guideway"),
+        **provenance("Coupled response of a vehicle and a guideway"),
         "speed": float(speed),
         "duration": float(duration),
         "start": float(start),
@@ -299,7 +298,7 @@ def moving_loads(
         "deflection": response.values,
     }
     attributes = {
-        **_provenance("Response of a guideway to prescribed moving loads"),
+        **provenance("Response of a guideway to prescribed moving loads"),
         "speed": float(speed),
         "time_step": float(time_step),
         "truncation": 0.5 / time_step if truncation is None else float(truncation),
@@ -374,8 +373,3 @@ def _enveloped(vehicle: Vehicle, spectra: np.ndarray, speed: float, grid: Spectr
     for number in seeing:
         enveloped[:, number] *= vehicle.contacts[number].enveloping(wavenumber)
     return enveloped
-
-
-def _provenance(title: str) -> dict[str, str | float | int]:
-
-    return {"title": title, "movingfrf": VERSION}

@@ -15,8 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from movingfrf._basics.arrays import finite
-from movingfrf.metrics.measures import Measure
-from movingfrf.results.labels import COUPLED, LOADED, flaws
+from movingfrf.results.labels import COUPLED, LOADED, Measure, flaws
 
 if TYPE_CHECKING:
     import xarray as xr

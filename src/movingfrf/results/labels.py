@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from movingfrf._basics.version import VERSION
+from movingfrf._basics.wording import plain
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -171,3 +174,37 @@ def flaws(result: xr.Dataset, names: Iterable[str]) -> list[str]:
             ]
             found.append(f"has {name} {values[tuple(bad[0])]} at {', '.join(where)}")
     return found
+
+
+def speed_in_words(result: xr.Dataset) -> str:
+    """Write the speed in both units."""
+    speed_in_words = result.attrs["speed"]
+    # Unbreakable spaces: a number stays with its unit.
+    return f"{plain(speed_in_words)}\u00a0m/s ({plain(round(3.6 * speed_in_words, 6))}\u00a0km/h)"
+
+
+def duration_of(result: xr.Dataset) -> float:
+    """Duration of the record [s], free of the rounding of its last time."""
+    return float(f"{result.sizes['time'] * time_step_of(result):.12g}")
+
+
+def time_step_of(result: xr.Dataset) -> float:
+    """Step in time [s], without the rounding of a difference."""
+    time = result.time.values
+    return float(f"{time[1] - time[0]:.12g}")
+
+
+class Measure(NamedTuple):
+    """One number about a result."""
+
+    quantity: str  # what was measured, and where
+    name: str  # which measure
+    value: float
+    units: str
+    standard: str = ""  # the standard or the source that defines it, where the name alone does not
+    note: str = ""  # what the standard makes of the value, or why there is none (nan)
+
+
+def provenance(title: str) -> dict[str, str | float | int]:
+    """Say what a result is and which version of the package made it."""
+    return {"title": title, "movingfrf": VERSION}
