@@ -238,19 +238,19 @@ FAULTS = [
     Fault("limits at the centres", "roughness/spectra/iso.py", "roughness < 2 * centre", "roughness < centre"),
     Fault(
         "waviness ignored",
-        "roughness/spectra/iso.py",
+        "roughness/spectra/spectrum.py",
         "power = 1 - np.asarray(exponent, float)",
         "power = np.array(-1.0)",
     ),
     Fault(
         "variance from zero on",
-        "roughness/spectra/iso.py",
+        "roughness/spectra/spectrum.py",
         "self._integral(self.band[0],",
         "self._integral(0.5 * self.band[0],",
     ),
     Fault(
         "content beside the band",
-        "roughness/spectra/iso.py",
+        "roughness/spectra/spectrum.py",
         "np.where(n == spatial_frequency, self._formula(n), 0.0)",
         "self._formula(n)",
     ),
@@ -359,11 +359,11 @@ FAULTS = [
         "last - first, **given)",
     ),
     Fault(
-        "strangers taken for one path", "scenarios/roads.py", "return 0.0 if different", "return 1.0 if different"
+        "strangers taken for one path", "roughness/road.py", "return 0.0 if different", "return 1.0 if different"
     ),
     Fault(
         "surface without a coherence",
-        "scenarios/roads.py",
+        "roughness/road.py",
         "return coherence if coherence is not None else presumed(spectrum)",
         "return coherence",
     ),

@@ -149,9 +149,8 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
 
     Examples
     --------
-    >>> from movingfrf.roughness.realisation import realise
-    >>> from movingfrf.roughness.spectra.iso import IsoRoad
-    >>> road = realise(IsoRoad.of_class("B"), length=1000.0, seed=1)
+    >>> import movingfrf as mf
+    >>> road = mf.realise(mf.IsoRoad.of_class("B"), length=1000.0, seed=1)
     >>> describe_profile(road).paths[0].fit.road_class
     'B'
     """

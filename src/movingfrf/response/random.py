@@ -35,7 +35,7 @@ from movingfrf.response.transfer import BYTES_PER_VALUE, coordinates, responses
 from movingfrf.results.findings import Finding
 from movingfrf.results.labels import RANDOM, RANDOM_QUANTITIES, labelled
 from movingfrf.roughness.spectra.coherence import Coherence
-from movingfrf.roughness.spectra.iso import Spectrum
+from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 if TYPE_CHECKING:

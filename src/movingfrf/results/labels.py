@@ -178,9 +178,9 @@ def flaws(result: xr.Dataset, names: Iterable[str]) -> list[str]:
 
 def speed_in_words(result: xr.Dataset) -> str:
     """Write the speed in both units."""
-    speed_in_words = result.attrs["speed"]
+    speed = result.attrs["speed"]
     # Unbreakable spaces: a number stays with its unit.
-    return f"{plain(speed_in_words)}\u00a0m/s ({plain(round(3.6 * speed_in_words, 6))}\u00a0km/h)"
+    return f"{plain(speed)}\u00a0m/s ({plain(round(3.6 * speed, 6))}\u00a0km/h)"
 
 
 def duration_of(result: xr.Dataset) -> float:

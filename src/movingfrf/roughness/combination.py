@@ -36,9 +36,9 @@ def superposed(*profiles: Profile) -> Profile:
 
     Examples
     --------
-    >>> from movingfrf.roughness.irregularities import bump, harmonic
-    >>> both = superposed(harmonic(amplitude=0.001, wavelength=4.0, length=20.0),
-    ...                   bump(height=0.02, width=1.0, at=4.5, length=20.0))
+    >>> import movingfrf as mf
+    >>> both = superposed(mf.harmonic(amplitude=0.001, wavelength=4.0, length=20.0),
+    ...                   mf.bump(height=0.02, width=1.0, at=4.5, length=20.0))
     >>> round(float(both.along(0)(5.0)), 6)
     0.021
     """
@@ -79,9 +79,9 @@ def side_by_side(*profiles: Profile) -> Profile:
 
     Examples
     --------
-    >>> from movingfrf.roughness.irregularities import wheel_flat
+    >>> import movingfrf as mf
     >>> level = Profile([0.0, 4.0, 8.0, 12.0], [0.0, 0.0, 0.0, 0.0])
-    >>> side_by_side(wheel_flat(radius=0.46, chord=0.05, length=12.0), level).paths
+    >>> side_by_side(mf.wheel_flat(radius=0.46, chord=0.05, length=12.0), level).paths
     2
     """
     with checking() as check:

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf.roughness.spectra.iso import CLASS_CENTRES, REFERENCE_FREQUENCY, band_in_words, iso_class
+from movingfrf.roughness.spectra.iso import CLASS_CENTRES, REFERENCE_FREQUENCY, iso_class
+from movingfrf.roughness.spectra.spectrum import band_in_words
 
 # Bands in which ISO 8608 smooths a spectrum [cycle/m]: octaves up to a centre of 1/32, thirds of octaves up to 1/4,
 # twelfths beyond, over the range that it fits, 0.011 to 2.83.

@@ -13,7 +13,7 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
 from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.spectra.coherence import Coherence, presumed
-from movingfrf.roughness.spectra.iso import Spectrum
+from movingfrf.roughness.spectra.spectrum import Spectrum
 
 # Bytes per sample and path that a realisation takes at its peak.
 BYTES_PER_SAMPLE = 64
@@ -83,11 +83,11 @@ def realise(
 
     Examples
     --------
-    >>> from movingfrf.roughness.spectra.iso import IsoRoad
-    >>> road = realise(IsoRoad.of_class("A"), length=100.0, seed=1)
+    >>> import movingfrf as mf
+    >>> road = realise(mf.IsoRoad.of_class("A"), length=100.0, seed=1)
     >>> road.stations[-1].item()
     100.0
-    >>> realise(IsoRoad.of_class("A"), length=100.0, seed=1, across=[0.75, -0.75]).paths
+    >>> realise(mf.IsoRoad.of_class("A"), length=100.0, seed=1, across=[0.75, -0.75]).paths
     2
     """
     with checking() as check:
@@ -158,8 +158,8 @@ def realise_laplace(
 
     Examples
     --------
-    >>> from movingfrf.roughness.spectra.iso import IsoRoad
-    >>> road = realise_laplace(IsoRoad.of_class("C"), kurtosis=9.0, segment=100.0, length=1000.0, seed=1)
+    >>> import movingfrf as mf
+    >>> road = realise_laplace(mf.IsoRoad.of_class("C"), kurtosis=9.0, segment=100.0, length=1000.0, seed=1)
     >>> road.stations[-1].item()
     1000.0
     """

@@ -14,7 +14,7 @@ from movingfrf.response.simulation import BYTES_PER_SAMPLE, spectral_grid
 from movingfrf.response.solve import joined, steady_state
 from movingfrf.results.findings import near_critical
 from movingfrf.roughness.fitting import fit_iso
-from movingfrf.scenarios.roads import Road
+from movingfrf.roughness.road import Road
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.vehicles.modes import Mode, vehicle_modes
 from movingfrf.vehicles.vehicle import Vehicle

@@ -8,28 +8,18 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from movingfrf._basics.checks import checking
 from movingfrf.roughness import combination, irregularities
 from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.realisation import realise, realise_laplace
-from movingfrf.roughness.spectra.coherence import Coherence, presumed
-from movingfrf.roughness.spectra.iso import IsoRoad, Spectrum
+from movingfrf.roughness.road import Road, in_common
+from movingfrf.roughness.spectra.coherence import Coherence
+from movingfrf.roughness.spectra.iso import IsoRoad
 from movingfrf.roughness.spectra.rail import ChineseBallastlessTrack, FraTrack, FrybaTrack, GermanTrack, SncfTrack
+from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.roughness.spectra.tabulated import TabulatedSpectrum, ThirdOctaveSpectrum, iso3095_limit
-
-
-class Road(NamedTuple):
-    """A profile, a sentence about where it comes from, and the spectrum of the Gaussian roads that it is one of.
-
-    `coherence` says what its paths have in common: 1 for the same elevation on all, 0 for nothing.
-    """
-
-    profile: Profile
-    description: str
-    spectrum: Spectrum | None = None
-    coherence: Coherence | float | None = None
 
 
 def _with_signature(function: Callable[..., Any], parameters: Iterable[inspect.Parameter]) -> Callable[..., Any]:
@@ -82,7 +72,7 @@ def realised(make_spectrum: Callable[..., Spectrum]) -> Callable[..., Road]:
         profile = realise(
             spectrum, length=last - first, step=step, seed=seed, start=first, across=across, coherence=coherence
         )
-        return Road(profile, profile.source, spectrum, _in_common(spectrum, seed, across, coherence))
+        return Road(profile, profile.source, spectrum, in_common(spectrum, seed, across, coherence))
 
     own = _parameters(road, "given")
     return _with_signature(road, [own[0], *_parameters(make_spectrum), *own[1:]])
@@ -139,19 +129,6 @@ def side_by_side(*, interval: tuple[float, float], parts: Sequence[Road]) -> Roa
     """Set roads side by side, each a path of its own."""
     profile = combination.side_by_side(*[part.profile for part in parts])
     return Road(profile, "; ".join(part.description for part in parts))
-
-
-def _in_common(
-    spectrum: Spectrum, seed: int | Sequence[int], across: Sequence[float] | None, coherence: Coherence | None
-) -> Coherence | float | None:
-    """Say what the paths of a realisation have in common; None if only some of them are equal."""
-    if across is not None:
-        return coherence if coherence is not None else presumed(spectrum)
-    seeds = seed if isinstance(seed, Sequence) else [seed]
-    different = len(set(seeds))
-    if different == 1:
-        return 1.0
-    return 0.0 if different == len(seeds) else None
 
 
 # Kind of spectrum → what makes it.

@@ -25,9 +25,10 @@ from movingfrf.response.simulation import moving_loads, require_record, simulate
 from movingfrf.roughness.excitation import require_cover
 from movingfrf.roughness.files import read_profile
 from movingfrf.roughness.preparation import prepared
+from movingfrf.roughness.road import Road
 from movingfrf.roughness.spectra.coherence import ExponentialCoherence, IsotropicCoherence
 from movingfrf.scenarios import forces
-from movingfrf.scenarios.roads import ROADS, SPECTRA, Road
+from movingfrf.scenarios.roads import ROADS, SPECTRA
 from movingfrf.vehicles.assembly import Body, Hinge, Suspension, assemble
 from movingfrf.vehicles.cars import full_car, half_car, quarter_car
 from movingfrf.vehicles.catalogue import catalogue

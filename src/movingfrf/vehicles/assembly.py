@@ -204,11 +204,11 @@ def assemble(
     --------
     A plank on two wheels of which the front one has a spring:
 
-    >>> from movingfrf.vehicles.contact import Contact
+    >>> import movingfrf as mf
     >>> plank = assemble(
     ...     bodies=[Body(mass=100.0, pitch_inertia=30.0), Body(mass=10.0, position=1.0, name="wheel")],
     ...     suspensions=[Suspension(upper="", lower="wheel", stiffness=1e5, position=1.0)],
-    ...     contacts=[Contact(position=1.0, stiffness=2e5), Contact(position=-1.0, stiffness=2e5)],
+    ...     contacts=[mf.Contact(position=1.0, stiffness=2e5), mf.Contact(position=-1.0, stiffness=2e5)],
     ...     under=["wheel", ""],
     ... )
     >>> plank.dof_names

@@ -44,9 +44,9 @@ def convoy(
 
     Examples
     --------
-    >>> from movingfrf.vehicles.cars import quarter_car
-    >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
-    ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> import movingfrf as mf
+    >>> car = mf.quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                      suspension_damping=1.5e3, tyre_stiffness=2e5)
     >>> convoy([car, car], gaps=30.0).positions.tolist()
     [0.0, -30.0]
     """
@@ -170,9 +170,9 @@ def seated(
 
     Examples
     --------
-    >>> from movingfrf.vehicles.cars import quarter_car
-    >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
-    ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> import movingfrf as mf
+    >>> car = mf.quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                      suspension_damping=1.5e3, tyre_stiffness=2e5)
     >>> driven = seated(car, mount={"body": 1.0}, driver_mass=60.0, cushion_stiffness=3e4, cushion_damping=800.0)
     >>> driven.dof_names
     ('body', 'wheel', 'driver')
@@ -258,9 +258,9 @@ def on_paths(vehicle: Vehicle, paths: Sequence[int]) -> Vehicle:
 
     Examples
     --------
-    >>> from movingfrf.vehicles.cars import quarter_car
-    >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
-    ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> import movingfrf as mf
+    >>> car = mf.quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                      suspension_damping=1.5e3, tyre_stiffness=2e5)
     >>> on_paths(car, [1]).paths
     [1]
     """

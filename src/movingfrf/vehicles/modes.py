@@ -52,9 +52,9 @@ def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
 
     Examples
     --------
-    >>> from movingfrf.vehicles.cars import quarter_car
-    >>> car = quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
-    ...                   suspension_damping=1.5e3, tyre_stiffness=2e5)
+    >>> import movingfrf as mf
+    >>> car = mf.quarter_car(body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4,
+    ...                      suspension_damping=1.5e3, tyre_stiffness=2e5)
     >>> [mode.description for mode in vehicle_modes(car)]
     ['body 100 %', 'wheel 98 %']
     """

@@ -10,7 +10,8 @@ from scipy.special import gamma, kv
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
-from movingfrf.roughness.spectra.iso import LARGEST_WAVINESS, IsoRoad, Spectrum
+from movingfrf.roughness.spectra.iso import IsoRoad
+from movingfrf.roughness.spectra.spectrum import LARGEST_WAVINESS, Spectrum
 
 # Below it the Bessel function of the largest waviness would overflow; γ differs from 1 by rounding alone there.
 SMALLEST_ARGUMENT = 1e-60

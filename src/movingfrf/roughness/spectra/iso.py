@@ -2,86 +2,23 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
-
-import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.checks import checking
+from movingfrf.roughness.spectra.spectrum import (
+    BandLimited,
+    band_in_words,
+    check_waviness,
+    checked_band,
+    power_integral,
+)
 
 # Spatial frequency at which ISO 8608 states the roughness [cycle/m].
 REFERENCE_FREQUENCY = 0.1
 
 # Geometric class centres of ISO 8608 at 0.1 cycle/m [m³]; the limits between classes are twice these.
 CLASS_CENTRES = {letter: 16e-6 * 4.0**n for n, letter in enumerate("ABCDEFGH")}
-
-# Measured roads lie between 1 and 4; powers far beyond overflow.
-LARGEST_WAVINESS = 10.0
-
-
-class Spectrum(Protocol):
-    """A roughness spectrum: how much elevation lies at which spatial frequency."""
-
-    @property
-    def band(self) -> tuple[float, float]:
-        """Spatial frequencies between which there is content [cycle/m]."""
-        ...
-
-    def density(self, spatial_frequency: FloatArray) -> FloatArray:
-        """One-sided spectral density of the elevation, zero outside the band [m³]."""
-        ...
-
-    def variance_below(self, spatial_frequency: FloatArray) -> FloatArray:
-        """Variance of the elevation up to a spatial frequency [m²]."""
-        ...
-
-
-class BandLimited(ABC):
-    """A formula and its integral, cut off at the ends of a band: all that a spectrum needs."""
-
-    __slots__ = ()
-    band: tuple[float, float]
-
-    @abstractmethod
-    def _formula(self, n: FloatArray) -> FloatArray:
-        """Spectral density within the band [m³]."""
-
-    @abstractmethod
-    def _integral(self, low: float, high: FloatArray) -> FloatArray:
-        """Integral of the formula between two places within the band [m²]."""
-
-    def density(self, spatial_frequency: FloatArray) -> FloatArray:
-        """One-sided spectral density of the elevation, zero outside the band.
-
-        Parameters
-        ----------
-        spatial_frequency : ndarray
-            Spatial frequency [cycle/m].
-
-        Returns
-        -------
-        ndarray
-            G_d [m³].
-        """
-        n = np.clip(spatial_frequency, *self.band)
-        return np.where(n == spatial_frequency, self._formula(n), 0.0)
-
-    def variance_below(self, spatial_frequency: FloatArray) -> FloatArray:
-        """Variance of the elevation from the lower end of the band up to a spatial frequency.
-
-        Parameters
-        ----------
-        spatial_frequency : ndarray
-            Spatial frequency [cycle/m].
-
-        Returns
-        -------
-        ndarray
-            ∫ G_d dn [m²].
-        """
-        return self._integral(self.band[0], np.clip(spatial_frequency, *self.band))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,6 +45,7 @@ class IsoRoad(BandLimited):
 
     Examples
     --------
+    >>> import numpy as np
     >>> IsoRoad.of_class("A").roughness
     1.6e-05
     >>> IsoRoad(roughness=16e-6).density(np.array([0.1, 1.0])).tolist()
@@ -170,43 +108,6 @@ class IsoRoad(BandLimited):
 
     def _integral(self, low: float, high: FloatArray) -> FloatArray:
         return power_integral(self.roughness * REFERENCE_FREQUENCY**self.waviness, self.waviness, low, high)
-
-
-def power_integral(
-    scale: FloatArray | float, exponent: FloatArray | float, low: FloatArray | float, high: FloatArray | float
-) -> FloatArray:
-    """∫ scale · n^−w dn from `low` to `high`, for an exponent w of any size.
-
-    Examples
-    --------
-    >>> power_integral(2.0, 2.0, 1.0, np.array([2.0, 4.0])).tolist()
-    [1.0, 1.5]
-    """
-    power = 1 - np.asarray(exponent, float)
-    logarithm = power == 0
-    safe = np.where(logarithm, 1.0, power)
-    return np.where(
-        logarithm, scale * np.log(np.divide(high, low)), scale * (np.power(high, safe) - np.power(low, safe)) / safe
-    )
-
-
-def check_waviness(check: Checks, waviness: float) -> None:
-    """Demand an exponent whose powers do not overflow."""
-    if abs(check.finite("waviness", waviness, "1")) > LARGEST_WAVINESS:
-        check.refuse("waviness", f"must lie within ±{LARGEST_WAVINESS:g}, got {waviness!r}")
-
-
-def checked_band(check: Checks, band: tuple[float, float]) -> tuple[float, float]:
-    """Demand two increasing positive frequencies."""
-    low, high = check.pair("band", band, "cycle/m")
-    if low >= high:
-        check.refuse("band", f"must be two increasing frequencies, got {band!r} cycle/m")
-    return low, high
-
-
-def band_in_words(band: tuple[float, float]) -> str:
-    """Write a band with its unit."""
-    return f"{band[0]:g} to {band[1]:g} cycle/m"
 
 
 def iso_class(roughness: float) -> str:

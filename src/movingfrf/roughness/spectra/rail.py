@@ -14,7 +14,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking, shown
-from movingfrf.roughness.spectra.iso import BandLimited, band_in_words, checked_band, power_integral
+from movingfrf.roughness.spectra.spectrum import BandLimited, band_in_words, checked_band, power_integral
 
 # Wavelengths between which the FRA's forms hold: 5 and 1000 feet.
 FRA_BAND = (1 / 304.8, 1 / 1.524)

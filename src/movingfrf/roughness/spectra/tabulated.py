@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
-from movingfrf.roughness.spectra.iso import BandLimited, Spectrum, band_in_words
+from movingfrf.roughness.spectra.spectrum import BandLimited, Spectrum, band_in_words
 
 # Amplitude to which levels of roughness refer [m].
 REFERENCE = 1e-6
