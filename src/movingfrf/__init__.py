@@ -11,11 +11,11 @@ __version__ = VERSION
 
 # Public name → the module it lives in. Loaded on first use: importing the package costs next to nothing.
 _WHERE = {
-    "EulerBernoulliBeam": "guideways.track",
-    "TimoshenkoBeam": "guideways.track",
-    "Spring": "guideways.track",
-    "ShearLayer": "guideways.track",
-    "OnMass": "guideways.track",
+    "EulerBernoulliBeam": "guideways.beams",
+    "TimoshenkoBeam": "guideways.beams",
+    "Spring": "guideways.foundations",
+    "ShearLayer": "guideways.foundations",
+    "OnMass": "guideways.foundations",
     "track": "guideways.track",
     "RigidGuideway": "guideways.rigid",
     "Contact": "vehicles.contact",

@@ -3,239 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray
-from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.checks import checking
+from movingfrf.guideways.beams import Beam
 from movingfrf.guideways.critical import first_stationary_velocity, speed_of_greatest_deflection
-from movingfrf.guideways.waves import Ratio, polynomial, residue_sum, total
-
-ONE = polynomial({(0, 0): 1.0})
-
-
-@runtime_checkable
-class Beam(Protocol):
-    """What carries the load along the track: a dynamic stiffness in (κ, p)."""
-
-    mass: float
-
-    def beam_stiffness(self, *, damped: bool = True) -> Ratio:
-        """Dynamic stiffness per metre of a free beam [N/m²]; without its losses unless `damped`."""
-        ...
-
-
-@runtime_checkable
-class Foundation(Protocol):
-    """What holds the beam up: a dynamic stiffness in (κ, p)."""
-
-    def foundation_stiffness(self, *, damped: bool = True) -> Ratio:
-        """Dynamic stiffness per metre under the beam [N/m²]; without its losses unless `damped`."""
-        ...
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EulerBernoulliBeam:
-    """A slender beam: bending and translational inertia, no shear deformation.
-
-    Parameters
-    ----------
-    bending_stiffness : float
-        EI [N m²].
-    mass : float
-        Mass per metre [kg/m].
-    bending_damping : float
-        Kelvin–Voigt damping of the bending [N m² s]: the moment is −(EI + B ∂/∂t) ∂²w/∂x².
-
-    Raises
-    ------
-    ValueError
-        If stiffness or mass is not positive, or the damping is negative.
-
-    Examples
-    --------
-    >>> beam = EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9)
-    >>> EulerBernoulliBeam(bending_stiffness=-1.0, mass=711.9)
-    Traceback (most recent call last):
-    movingfrf._basics.checks.ParameterError: bending_stiffness must be positive, got -1.0 N m²
-    """
-
-    bending_stiffness: float
-    mass: float
-    bending_damping: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Check the parameters."""
-        with checking() as check:
-            check.positive("bending_stiffness", self.bending_stiffness, "N m²")
-            check.positive("mass", self.mass, "kg/m")
-            check.not_negative("bending_damping", self.bending_damping, "N m² s")
-
-    def beam_stiffness(self, *, damped: bool = True) -> Ratio:
-        """EI κ⁴ + B κ⁴ p + m p² [N/m²]."""
-        terms = {(4, 0): self.bending_stiffness, (0, 2): self.mass}
-        if damped and self.bending_damping:
-            terms[4, 1] = self.bending_damping
-        return Ratio(polynomial(terms), ONE)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TimoshenkoBeam:
-    """A beam with shear deformation and rotary inertia.
-
-    Parameters
-    ----------
-    bending_stiffness : float
-        EI [N m²].
-    mass : float
-        Mass per metre [kg/m].
-    shear_stiffness : float
-        κ_s G A [N], the shear coefficient included.
-    rotary_inertia : float
-        ρ I [kg m].
-
-    Raises
-    ------
-    ValueError
-        If a stiffness or the mass is not positive, or the rotary inertia is negative.
-    """
-
-    bending_stiffness: float
-    mass: float
-    shear_stiffness: float
-    rotary_inertia: float
-
-    def __post_init__(self) -> None:
-        """Check the parameters."""
-        with checking() as check:
-            check.positive("bending_stiffness", self.bending_stiffness, "N m²")
-            check.positive("mass", self.mass, "kg/m")
-            check.positive("shear_stiffness", self.shear_stiffness, "N")
-            check.not_negative("rotary_inertia", self.rotary_inertia, "kg m")
-
-    def beam_stiffness(self, *, damped: bool = True) -> Ratio:
-        """S κ² − (S κ)²/(EI κ² + S + ρI p²) + m p² [N/m²], over its common denominator."""
-        shear, bending, inertia = self.shear_stiffness, self.bending_stiffness, self.rotary_inertia
-        rotation = {(2, 0): bending, (0, 0): shear}
-        # S κ² (EI κ² + ρI p²), the two terms S² κ² having cancelled on paper rather than in floating point.
-        shearing = {(4, 0): shear * bending}
-        if inertia:
-            rotation[0, 2] = inertia
-            shearing[2, 2] = shear * inertia
-        below = polynomial(rotation)
-        massive = polynomial({(a, b + 2): self.mass * value for (a, b), value in rotation.items()})
-        return Ratio(total(polynomial(shearing), massive), below)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Spring:
-    """Springs and dashpots side by side (Winkler, Kelvin–Voigt).
-
-    Parameters
-    ----------
-    stiffness : float
-        Stiffness per metre of track [N/m²].
-    damping : float
-        Damping per metre of track [N s/m²].
-
-    Raises
-    ------
-    ValueError
-        If the stiffness is not positive or the damping is negative.
-    """
-
-    stiffness: float
-    damping: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Check the parameters."""
-        with checking() as check:
-            _check_spring(check, self.stiffness, self.damping)
-
-    def foundation_stiffness(self, *, damped: bool = True) -> Ratio:
-        """Return k + c p [N/m²]."""
-        return Ratio(_spring(self.stiffness, self.damping, damped), ONE)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ShearLayer:
-    """Springs and dashpots tied together by a layer that resists shear (Pasternak).
-
-    Parameters
-    ----------
-    stiffness : float
-        Stiffness per metre of track [N/m²].
-    damping : float
-        Damping per metre of track [N s/m²].
-    shear_stiffness : float
-        Pasternak's G_p [N].
-
-    Raises
-    ------
-    ValueError
-        If a stiffness is not positive or the damping is negative.
-    """
-
-    stiffness: float
-    damping: float = 0.0
-    shear_stiffness: float
-
-    def __post_init__(self) -> None:
-        """Check the parameters."""
-        with checking() as check:
-            _check_spring(check, self.stiffness, self.damping)
-            check.positive("shear_stiffness", self.shear_stiffness, "N")
-
-    def foundation_stiffness(self, *, damped: bool = True) -> Ratio:
-        """Return k + c p + G_p κ² [N/m²]."""
-        shear = polynomial({(2, 0): self.shear_stiffness})
-        return Ratio(total(_spring(self.stiffness, self.damping, damped), shear), ONE)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OnMass:
-    """A foundation that stands on a layer of mass, which stands on another foundation.
-
-    Rail pad, sleepers, ballast: ``OnMass(above=pad, mass=250.0, below=ballast)``. Nests to any depth.
-
-    Parameters
-    ----------
-    above : Foundation
-        Between the beam and the mass.
-    mass : float
-        Mass per metre of track [kg/m].
-    below : Foundation
-        Under the mass.
-
-    Raises
-    ------
-    ValueError
-        If the mass is not positive, or `above` or `below` is not a foundation.
-    """
-
-    above: Foundation
-    mass: float
-    below: Foundation
-
-    def __post_init__(self) -> None:
-        """Check the parameters."""
-        with checking() as check:
-            check.positive("mass", self.mass, "kg/m")
-            for name in ("above", "below"):
-                if not isinstance(getattr(self, name), Foundation):
-                    check.refuse(name, f"must be a foundation, got {getattr(self, name)!r}")
-
-    def foundation_stiffness(self, *, damped: bool = True) -> Ratio:
-        """Series of what is above and of the mass on what is below [N/m²]."""
-        if isinstance(self.above, OnMass):
-            # Only what has no mass transmits the same force at both ends: number the layers from the top.
-            top = self.above
-            rest = OnMass(above=top.below, mass=self.mass, below=self.below)
-            return OnMass(above=top.above, mass=top.mass, below=rest).foundation_stiffness(damped=damped)
-        layer = Ratio(polynomial({(0, 2): self.mass}), ONE) + self.below.foundation_stiffness(damped=damped)
-        return self.above.foundation_stiffness(damped=damped).in_series(layer)
+from movingfrf.guideways.foundations import Foundation
+from movingfrf.guideways.waves import Ratio, residue_sum
 
 
 @dataclass(frozen=True, slots=True)
@@ -313,8 +90,9 @@ class Track:
 
         Examples
         --------
-        >>> road = track(EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9),
-        ...              Spring(stiffness=8.0e6, damping=3.0e4))
+        >>> import movingfrf as mf
+        >>> road = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9),
+        ...                 mf.Spring(stiffness=8.0e6, damping=3.0e4))
         >>> abs(road.moving_frf([0.0, 4.0, -4.0], 10.0, [0.0])).round(11)
         array([[3.737e-08, 3.600e-10, 0.000e+00]])
         """
@@ -357,12 +135,3 @@ def track(beam: Beam, foundation: Foundation) -> Track:
         if not isinstance(foundation, Foundation):
             check.refuse("foundation", f"must be a foundation, got {foundation!r}")
     return Track(beam, foundation)
-
-
-def _check_spring(check: Checks, stiffness: float, damping: float) -> None:
-    check.positive("stiffness", stiffness, "N/m²")
-    check.not_negative("damping", damping, "N s/m²")
-
-
-def _spring(stiffness: float, damping: float, damped: bool) -> np.ndarray:
-    return polynomial({(0, 0): stiffness, (0, 1): damping} if damped and damping else {(0, 0): stiffness})

@@ -330,3 +330,6 @@ def _one_side(kappa: ComplexArray, weight: ComplexArray, chosen: BoolArray, ahea
         total[:resting, at] += weight[wave, at]
         total[resting:, at] += weight[wave, at] * np.exp(1j * kappa[wave, at] * ahead[resting:, None])
     return total
+
+
+ONE = polynomial({(0, 0): 1.0})

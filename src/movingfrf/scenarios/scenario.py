@@ -18,9 +18,11 @@ import numpy as np
 
 from movingfrf._basics.checks import Fault, ParameterError, checking, nearest, shown
 from movingfrf._basics.progress import Progress, silent
+from movingfrf.guideways.beams import EulerBernoulliBeam, TimoshenkoBeam
+from movingfrf.guideways.foundations import OnMass, ShearLayer, Spring
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.rigid import RigidGuideway
-from movingfrf.guideways.track import EulerBernoulliBeam, OnMass, ShearLayer, Spring, TimoshenkoBeam, track
+from movingfrf.guideways.track import track
 from movingfrf.response.simulation import moving_loads, require_record, simulate, spectral_grid
 from movingfrf.roughness.excitation import require_cover
 from movingfrf.roughness.files import read_profile

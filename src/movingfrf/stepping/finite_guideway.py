@@ -14,7 +14,9 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf._basics.smooth import smooth_step
-from movingfrf.guideways.track import EulerBernoulliBeam, Foundation, OnMass, ShearLayer, Spring, Track
+from movingfrf.guideways.beams import EulerBernoulliBeam
+from movingfrf.guideways.foundations import Foundation, OnMass, ShearLayer, Spring
+from movingfrf.guideways.track import Track
 from movingfrf.stepping.factors import is_definite
 
 # Positions [m], order of the derivative and, on a road with a width, places across [m] → one row per position,

@@ -12,8 +12,10 @@ import scipy.sparse as sparse
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.progress import Progress, silent
+from movingfrf.guideways.beams import EulerBernoulliBeam
+from movingfrf.guideways.foundations import ShearLayer, Spring
 from movingfrf.guideways.sampled import SampledGuideway
-from movingfrf.guideways.track import EulerBernoulliBeam, ShearLayer, Spring, Track
+from movingfrf.guideways.track import Track
 from movingfrf.stepping.finite_guideway import (
     ENDS,
     SAME_PLACE,

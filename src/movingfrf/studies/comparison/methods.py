@@ -12,8 +12,10 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import nearest
 from movingfrf._basics.progress import Progress, silent
+from movingfrf.guideways.beams import EulerBernoulliBeam
+from movingfrf.guideways.foundations import OnMass
 from movingfrf.guideways.guideway import Guideway
-from movingfrf.guideways.track import EulerBernoulliBeam, OnMass, Track
+from movingfrf.guideways.track import Track
 from movingfrf.response.simulation import moving_loads, simulate
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.scenario import Scenario

@@ -9,7 +9,8 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.wording import number
-from movingfrf.guideways.track import Spring, Track
+from movingfrf.guideways.foundations import Spring
+from movingfrf.guideways.track import Track
 from movingfrf.reports import plots
 from movingfrf.reports.page import Column
 from movingfrf.response.line import SpectralGrid
