@@ -29,7 +29,8 @@ import movingfrf as mf
 from movingfrf.reports.page import Table
 from movingfrf.results.labels import COUPLED, labelled
 from movingfrf.roughness.excitation import excite
-from movingfrf.scenarios.scenario import Scenario, parse_scenario
+from movingfrf.scenarios.reading import parse_scenario
+from movingfrf.scenarios.scenario import Scenario
 from movingfrf.stepping.marching import March, law_of
 from movingfrf.stepping.schemes import SCHEMES
 from movingfrf.studies.comparison.comparison import Comparison, Point, ratios

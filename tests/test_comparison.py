@@ -16,7 +16,7 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.commands.main import main
-from movingfrf.scenarios.scenario import parse_scenario
+from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.studies.comparison.comparison import (
     Point,
     converged,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.scenarios.scenario import parse_scenario
+from movingfrf.scenarios.reading import parse_scenario
 
 ROOT = Path(__file__).parents[1]
 PAVED_ROAD = ROOT.parent / "shared" / "data" / "utia_profile.txt"

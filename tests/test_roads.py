@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
+from movingfrf.scenarios.kinds import KINDS
+from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.roads import ROADS, SPECTRA
-from movingfrf.scenarios.scenario import KINDS, parse_scenario
 
 CAR = """
 [guideway]

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import movingfrf as mf
-from movingfrf.scenarios.scenario import KINDS, parse_scenario
+from movingfrf.scenarios.kinds import KINDS
+from movingfrf.scenarios.reading import parse_scenario
 
 TEMPLATE = files("movingfrf").joinpath("scenarios", "templates", "scenario.toml").read_text(encoding="utf-8")
 

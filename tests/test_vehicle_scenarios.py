@@ -10,7 +10,8 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.commands.main import main
-from movingfrf.scenarios.scenario import KINDS, named_vehicle, parse_scenario
+from movingfrf.scenarios.kinds import KINDS
+from movingfrf.scenarios.reading import named_vehicle, parse_scenario
 from movingfrf.studies.comparison.methods import chosen
 from movingfrf.vehicles.catalogue import CATALOGUE
 from tests.helpers import HALF_TRUCK

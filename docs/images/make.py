@@ -7,7 +7,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from movingfrf.reports import plots
-from movingfrf.scenarios.scenario import parse_scenario
+from movingfrf.scenarios.reading import parse_scenario
 
 
 def main() -> None:

@@ -88,7 +88,7 @@ _WHERE = {
     "spectral_fatigue": "metrics.fatigue",
     "Scenario": "scenarios.scenario",
     "ScenarioError": "scenarios.scenario",
-    "read_scenario": "scenarios.scenario",
+    "read_scenario": "scenarios.reading",
     "SampledGuideway": "guideways.sampled",
     "newmark_loads": "stepping.moving_loads",
     "moving_impulse_response": "stepping.impulse",

@@ -586,7 +586,7 @@ def test_many_small_matrices_are_solved_by_one_thread(monkeypatch):
         seen.extend(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
         return solve_contacts(*arguments)
 
-    monkeypatch.setattr("movingfrf.response.transfer.solve_contacts", watched)
+    monkeypatch.setattr("movingfrf.response.solve.solve_contacts", watched)
     with threadpool_limits(limits=2):
         respond("three_axles", coherence=None)
     assert set(seen) == {1}

@@ -117,7 +117,7 @@ def check(file: Path, /) -> None:
         The scenario.
     """
     from movingfrf.scenarios.description import described, remarks
-    from movingfrf.scenarios.scenario import read_scenario
+    from movingfrf.scenarios.reading import read_scenario
 
     scenario = read_scenario(file)
     console = _console()
@@ -141,7 +141,7 @@ def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Param
     """
     from movingfrf._basics.wording import count
     from movingfrf.scenarios.description import described_vehicle
-    from movingfrf.scenarios.scenario import named_vehicle
+    from movingfrf.scenarios.reading import named_vehicle
     from movingfrf.vehicles.catalogue import CATALOGUE
     from movingfrf.vehicles.files import write_vehicle
     from movingfrf.vehicles.vehicle import GRAVITY
@@ -198,7 +198,7 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
         from movingfrf.metrics.measures import measures
         from movingfrf.reports.coupled import render
         from movingfrf.results.files import replacing, save, summary
-        from movingfrf.scenarios.scenario import read_scenario
+        from movingfrf.scenarios.reading import read_scenario
 
         stages.report("scenario", 0.0)
         scenario = read_scenario(file)
@@ -256,7 +256,7 @@ def random(
         from movingfrf.reports.random import drawing_frequencies, paths, render
         from movingfrf.response.random import random_response
         from movingfrf.results.files import replacing, save, summary
-        from movingfrf.scenarios.scenario import read_scenario
+        from movingfrf.scenarios.reading import read_scenario
 
         scenario = read_scenario(file)
         road = scenario.road
@@ -398,7 +398,7 @@ def compare(
     with stages:
         stages.report("loading", 0.0)
         from movingfrf.results.files import replacing
-        from movingfrf.scenarios.scenario import read_scenario
+        from movingfrf.scenarios.reading import read_scenario
         from movingfrf.studies.comparison import files as written
         from movingfrf.studies.comparison.comparison import compare as compared
         from movingfrf.studies.comparison.page import findings, render, tables

@@ -26,7 +26,8 @@ from threadpoolctl import threadpool_limits
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError, ValidityWarning
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.scenarios.scenario import Scenario, parse_scenario
+from movingfrf.scenarios.reading import parse_scenario
+from movingfrf.scenarios.scenario import Scenario
 from movingfrf.studies.comparison.methods import (
     AROUND,
     WITH_LOADS,

@@ -24,7 +24,8 @@ from movingfrf.guideways.track import Track
 from movingfrf.response.line import SpectralGrid
 from movingfrf.response.simulation import moving_loads, simulate
 from movingfrf.roughness.profile import Profile
-from movingfrf.scenarios.scenario import Scenario, parse_scenario
+from movingfrf.scenarios.reading import parse_scenario
+from movingfrf.scenarios.scenario import Scenario
 from movingfrf.stepping.finite_guideway import FiniteGuideway, finite_track
 from movingfrf.stepping.impulse import struck_track
 from movingfrf.stepping.moving_loads import newmark_loads

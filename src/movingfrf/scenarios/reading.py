@@ -1,0 +1,286 @@
+"""Scenario files: TOML in, checked objects out, all faults of a file at once."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from movingfrf._basics.checks import Fault, ParameterError, nearest, shown
+from movingfrf.response.simulation import require_record, spectral_grid
+from movingfrf.roughness.excitation import require_cover
+from movingfrf.scenarios.kinds import DEFAULT_KIND, KINDS, TABLE_LISTS, TABLES
+from movingfrf.scenarios.scenario import Scenario, ScenarioError
+from movingfrf.vehicles.catalogue import catalogue
+from movingfrf.vehicles.files import read_vehicle
+from movingfrf.vehicles.vehicle import Vehicle
+
+WITH_VEHICLE, WITH_LOADS = {"guideway", "vehicle", "roughness", "run"}, {"guideway", "loads", "run"}
+
+# Stands for a journey's interval where the journey itself is refused, so that the road is checked all the same.
+SOME_INTERVAL = (0.0, 1.0)
+
+
+def read_scenario(file: str | Path) -> Scenario:
+    """Read and check a scenario file.
+
+    Parameters
+    ----------
+    file : str or Path
+        The file; paths in it are relative to its folder.
+
+    Returns
+    -------
+    Scenario
+        Ready to run.
+
+    Raises
+    ------
+    ScenarioError
+        With everything that is wrong with the file.
+    """
+    path = Path(file)
+    return parse_scenario(_text(path), name=path.stem, source=str(path), folder=path.parent)
+
+
+def named_vehicle(name: str | Path) -> Vehicle:
+    """Find a vehicle: in the catalogue, in a file of matrices, or in the [vehicle] table of a scenario.
+
+    Parameters
+    ----------
+    name : str or Path
+        Name in the catalogue, or a file.
+
+    Returns
+    -------
+    Vehicle
+        The vehicle.
+
+    Raises
+    ------
+    ValueError
+        If there is none, or it is refused.
+    """
+    path = Path(name)
+    if not path.suffix:
+        return catalogue(name=str(name))
+    if path.suffix.lower() != ".toml":
+        return read_vehicle(path)
+    tables = _tables(_text(path), str(path))
+    if "vehicle" not in tables:
+        return read_vehicle(path)
+    builder = _Builder(path.parent)
+    vehicle: Vehicle | None = builder.section(tables, "vehicle", "vehicle")
+    if builder.faults or vehicle is None:
+        raise ScenarioError(str(path), builder.faults)
+    return vehicle
+
+
+def parse_scenario(
+    text: str, *, name: str = "scenario", source: str = "scenario", folder: str | Path = "."
+) -> Scenario:
+    """Check the text of a scenario.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    name : str
+        Name of the scenario.
+    source : str
+        Where the text comes from, for messages.
+    folder : str or Path
+        Folder to which paths in the text are relative.
+
+    Returns
+    -------
+    Scenario
+        Ready to run.
+
+    Raises
+    ------
+    ScenarioError
+        With everything that is wrong with the text.
+    """
+    tables = _tables(text, source)
+    if not tables:
+        raise ScenarioError(source, [Fault("the file", "is empty; `movingfrf new` writes one to start from")])
+    builder = _Builder(Path(folder))
+    scenario = builder.scenario(tables, name, text)
+    if builder.faults or scenario is None:
+        raise ScenarioError(source, builder.faults)
+    return scenario
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        raise ScenarioError(str(path), [Fault("the file", f"cannot be read: {error.strerror or error}")]) from None
+    except UnicodeDecodeError:
+        raise ScenarioError(str(path), [Fault("the file", "is not a text file")]) from None
+
+
+def _tables(text: str, source: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except ValueError as error:  # TOML's own, or an integer of thousands of digits
+        raise ScenarioError(source, [Fault("the text", f"is not TOML: {error}")]) from None
+    except RecursionError:
+        raise ScenarioError(source, [Fault("the text", "is nested too deeply")]) from None
+
+
+class _Builder:
+    """Turns tables into objects and collects what is wrong with them."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.faults: list[Fault] = []
+
+    def scenario(self, tables: dict[str, Any], name: str, text: str) -> Scenario | None:
+        """Build everything; None if that was not possible, with the reasons in `faults`."""
+        with_loads = "loads" in tables
+        wanted = WITH_LOADS if with_loads else WITH_VEHICLE
+        for key in ("vehicle", "roughness"):
+            if with_loads and key in tables:
+                self.faults.append(Fault(key, "and [loads] exclude each other: forces are computed or prescribed"))
+                return None
+        self._check_keys("", tables, wanted, wanted)
+        guideway = self.section(tables, "guideway", "guideway")
+        journey = self.section(tables, "run", "passage" if with_loads else "journey")
+        if with_loads:
+            found = self.section(tables, "loads", "loads")
+            if found is not None and journey is not None:
+                channels = found.positions.size + found.observe.size
+                self._attempt(
+                    "run:",
+                    lambda: require_record(journey.duration, journey.duration, journey.time_step, channels),
+                )
+            if self.faults:
+                return None
+            return Scenario(
+                name=name, text=text, guideway=guideway, journey=journey, loads=found, folder=self.folder
+            )
+        vehicle = self.section(tables, "vehicle", "vehicle")
+        interval = SOME_INTERVAL
+        if journey is not None and vehicle is not None:
+            interval = journey.interval(vehicle)
+            if self._attempt("run:", lambda: spectral_grid(journey, vehicle)) is False:
+                return None
+        road = self.section(tables, "roughness", "roughness", interval=interval)
+        if vehicle is not None and road is not None and journey is not None:
+            paths = vehicle.paths
+            self._attempt("roughness:", lambda: require_cover(road.profile, *interval, paths))
+        if self.faults:
+            return None
+        return Scenario(
+            name=name,
+            text=text,
+            guideway=guideway,
+            journey=journey,
+            vehicle=vehicle,
+            road=road,
+            folder=self.folder,
+        )
+
+    def section(self, tables: Mapping[str, Any], key: str, family: str, **given: Any) -> Any:
+        """Build one table of the file, if it is there; None, with the reasons in `faults`, if it is refused."""
+        return self._built(tables[key], family, key, **given) if key in tables else None
+
+    def _built(self, table: Any, family: str, path: str, **given: Any) -> Any:
+        """Build one table, or return None and leave the reasons in `faults`."""
+        if not isinstance(table, dict):
+            self.faults.append(Fault(path, f"must be a table [{path}], got {shown(table)}"))
+            return None
+        factory = self._factory(table, family, path)
+        if factory is None:
+            return None
+        parameters = {n: p for n, p in inspect.signature(factory).parameters.items() if n not in given}
+        required = {n for n, p in parameters.items() if p.default is p.empty}
+        known = [*parameters, *(["kind"] if family not in DEFAULT_KIND or len(KINDS[family]) > 1 else [])]
+        broken = self._check_keys(f"{path}.", table, known, required)
+        arguments: dict[str, Any] = dict.fromkeys(broken)
+        for key in parameters.keys() & table.keys():
+            before = len(self.faults)
+            annotation = parameters[key].annotation
+            arguments[key] = self._argument(family, key, table[key], annotation, f"{path}.{key}", given)
+            if len(self.faults) > before:
+                broken.add(key)
+        try:
+            made = factory(**arguments, **given)
+        except ParameterError as error:
+            for fault in error.faults:
+                # What is missing or broken has been reported; its stand-in None need not be.
+                if re.split(r"[\[.]", fault.name)[0] not in broken:
+                    self.faults.append(Fault(f"{path}.{fault.name}", fault.message))
+            return None
+        except ValueError as error:
+            if not broken:
+                self.faults.append(Fault(f"{path}:", str(error)))
+            return None
+        except (TypeError, AttributeError):
+            # A stand-in may be of no use to a function that does not check first; its own errors are defects.
+            if not broken:
+                raise
+            return None
+        return None if broken else made
+
+    def _factory(self, table: Mapping[str, Any], family: str, path: str) -> Callable[..., Any] | None:
+        kind = table.get("kind", DEFAULT_KIND.get(family))
+        kinds = KINDS[family]
+        if kind is None:
+            self.faults.append(Fault(f"{path}.kind", f"is missing; it is one of {', '.join(kinds)}"))
+        elif not isinstance(kind, str) or kind not in kinds:
+            hint = nearest(str(kind), kinds)
+            self.faults.append(Fault(f"{path}.kind", f"must be one of {', '.join(kinds)}, got {shown(kind)}{hint}"))
+        else:
+            return kinds[kind]
+        return None
+
+    def _argument(
+        self, family: str, key: str, value: Any, annotation: str, path: str, given: dict[str, Any]
+    ) -> Any:
+        if key in TABLES:
+            return self._built(value, TABLES[key], path)
+        if (family, key) in TABLE_LISTS:
+            if not isinstance(value, list) or not value:
+                self.faults.append(Fault(path, f"must be one or more tables [[{path}]]"))
+                return None
+            listed = TABLE_LISTS[family, key]
+            # Parts of a road cover what the road has to cover.
+            passed = given if listed == family else {}
+            return [self._built(table, listed, f"{path}[{n}]", **passed) for n, table in enumerate(value)]
+        if annotation == "Path":
+            if not isinstance(value, str) or "\0" in value:
+                self.faults.append(Fault(path, f"must be the name of a file, got {shown(value)}"))
+                return None
+            return self.folder / value
+        return value
+
+    def _check_keys(
+        self, prefix: str, table: Mapping[str, Any], known: Iterable[str], required: Iterable[str]
+    ) -> set[str]:
+        """Report unknown and missing keys; returns the missing ones."""
+        known = list(known)
+        for key in table:
+            if key not in known:
+                allowed = ", ".join(sorted(known))
+                self.faults.append(
+                    Fault(f"{prefix}{key}", f"is not known here{nearest(key, known)}; allowed are {allowed}")
+                )
+        missing = set(required) - table.keys()
+        for key in sorted(missing):
+            self.faults.append(Fault(f"{prefix}{key}", "is missing"))
+        return missing
+
+    def _attempt(self, path: str, action: Callable[[], object]) -> bool:
+        """Run a check that raises; False if it did."""
+        try:
+            action()
+        except ValueError as error:
+            self.faults.append(Fault(path, str(error)))
+            return False
+        return True
