@@ -31,8 +31,9 @@ from movingfrf.results.labels import COUPLED, labelled
 from movingfrf.roughness.excitation import excite
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Scenario
-from movingfrf.stepping.marching import March, law_of
+from movingfrf.stepping.marching import March
 from movingfrf.stepping.schemes import SCHEMES
+from movingfrf.stepping.tie import tie_of
 from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
 from movingfrf.studies.comparison.page import tables
 
@@ -92,7 +93,7 @@ def steps_of_the_coupled_method() -> None:
         speed=10.0,
         contacts=vehicle.positions,
         observers=np.empty(0),
-        law=law_of(vehicle),
+        law=tie_of(vehicle),
     )
     march.prepare()
     steps = 24_000

@@ -380,24 +380,24 @@ FAULTS = [
     Fault("wheels exchanged along the road", "roughness/excitation.py", "(start + position)", "(start - position)"),
     Fault("rate of the blending missing", "roughness/excitation.py", "smooth_step_slope(setting_in)", "0.0"),
     # Finite roads.
-    Fault("shape function", "stepping/finite_guideway.py", "[0, 1, -2, 1]", "[0, 1, -1, 0]"),
-    Fault("slope of an element not scaled", "stepping/finite_guideway.py", "/ element**derivative", "/ 1.0"),
+    Fault("shape function", "stepping/finite_track.py", "[0, 1, -2, 1]", "[0, 1, -1, 0]"),
+    Fault("slope of an element not scaled", "stepping/finite_track.py", "/ element**derivative", "/ 1.0"),
     Fault(
         "Pasternak layer missing",
-        "stepping/finite_guideway.py",
+        "stepping/finite_track.py",
         "sparse.kron(integrals[1], layers.shear)",
         "0.0 * sparse.kron(integrals[1], layers.shear)",
     ),
     Fault(
         "bending damping as a dashpot",
-        "stepping/finite_guideway.py",
+        "stepping/finite_track.py",
         "track.beam.bending_damping * integrals[2]",
         "track.beam.bending_damping * integrals[0]",
     ),
-    Fault("sleepers on the ground", "stepping/finite_guideway.py", "stretch[n + 1 : n + 2] = -1.0", "pass"),
+    Fault("sleepers on the ground", "stepping/finite_track.py", "stretch[n + 1 : n + 2] = -1.0", "pass"),
     Fault(
         "absorption begins where it should end",
-        "stepping/finite_guideway.py",
+        "stepping/finite_track.py",
         "smooth_step(1.0 - distance / length)",
         "smooth_step(distance / length)",
     ),
@@ -472,7 +472,7 @@ FAULTS = [
         "else (self.across, self.source_across)",
         "else (self.source_across, self.across)",
     ),
-    Fault("guided end held", "stepping/finite_guideway.py", '"guided": (False, True)', '"guided": (True, True)'),
+    Fault("guided end held", "stepping/finite_track.py", '"guided": (False, True)', '"guided": (True, True)'),
     # Schemes and the plain loop.
     Fault("generalised α without its β", "stepping/schemes.py", "0.25 * (1 - alpha_m + alpha_f) ** 2", "0.25"),
     Fault(
@@ -547,17 +547,17 @@ FAULTS = [
     ),
     Fault(
         "lower half of the core",
-        "stepping/compiled.py",
+        "stepping/kernels.py",
         "core[q - 1 - b, q - 1 - a] += work",
         "core[q - 1 - b, q - 1 - a] -= work",
     ),
     Fault(
         "slope of a shape function",
-        "stepping/compiled.py",
+        "stepping/kernels.py",
         "slopes[1] = 1.0 + s * (3.0 * s - 4.0)",
         "slopes[1] = 1.0 + s * (3.0 * s - 2.0)",
     ),
-    Fault("band product one short", "stepping/compiled.py", "+ l3[i] * w3[i]", "+ 0.0 * w3[i]"),
+    Fault("band product one short", "stepping/kernels.py", "+ l3[i] * w3[i]", "+ 0.0 * w3[i]"),
     Fault(
         "suspension does not damp",
         "stepping/compiled.py",

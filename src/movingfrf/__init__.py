@@ -96,7 +96,7 @@ _WHERE = {
     "duhamel": "stepping.duhamel",
     "duhamel_loads": "stepping.duhamel",
     "FiniteGuideway": "stepping.finite_guideway",
-    "finite_track": "stepping.finite_guideway",
+    "finite_track": "stepping.finite_track",
     "finite_plate": "stepping.finite_plate",
     "struck_plate": "stepping.finite_plate",
     "Scheme": "stepping.schemes",

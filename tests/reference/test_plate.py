@@ -9,8 +9,9 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 import movingfrf as mf
-from movingfrf.stepping.marching import March, law_of
+from movingfrf.stepping.marching import March
 from movingfrf.stepping.schemes import SCHEMES
+from movingfrf.stepping.tie import tie_of
 from tests.helpers import DAMPED, FULL_TRUCK, QUARTER_TRUCK, TIMOSHENKO, apart, difference, observed_order
 
 # Two metres of the reference road, damped so strongly that what is struck is at rest after a third of a second.
@@ -555,7 +556,7 @@ def test_forces_at_the_start_fit_any_state():
         contacts=CAR.positions + 0.7,
         contacts_across=CAR.across,
         observers=np.empty(0),
-        law=law_of(CAR),
+        law=tie_of(CAR),
     )
     state = march.at_rest()
     state.road[:2], state.body[:2] = random.normal(size=(2, road.dofs)), random.normal(size=(2, 7))

@@ -17,8 +17,9 @@ from movingfrf._basics.version import VERSION
 from movingfrf.results.labels import COUPLED, labelled
 from movingfrf.roughness.excitation import Excitation, excite
 from movingfrf.roughness.profile import Profile
+from movingfrf.stepping.exchange import SOLVED, Iteration
 from movingfrf.stepping.finite_guideway import FiniteGuideway
-from movingfrf.stepping.marching import SOLVED, Iteration, March, State, law_of, no_vehicle, stiffness_at_rest
+from movingfrf.stepping.marching import March, State
 from movingfrf.stepping.requirements import (
     require_across,
     require_apart,
@@ -28,6 +29,7 @@ from movingfrf.stepping.requirements import (
     require_stable_scheme,
 )
 from movingfrf.stepping.schemes import Scheme, scheme_named
+from movingfrf.stepping.tie import no_vehicle, stiffness_at_rest, tie_of
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -325,7 +327,7 @@ def prepared(
         contacts_across=vehicle.across,
         observers=places,
         observers_travel=False,
-        law=law_of(vehicle),
+        law=tie_of(vehicle),
         iteration=iteration,
         compiled=compiled,
     )

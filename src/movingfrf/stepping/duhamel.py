@@ -17,9 +17,11 @@ from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.results.labels import COUPLED, LOADED, labelled
 from movingfrf.roughness.profile import Profile
 from movingfrf.stepping.coupled import seen_in_time
-from movingfrf.stepping.marching import STRIDE, Law, law_of, numba_is_there, stiffness_at_rest
+from movingfrf.stepping.exchange import numba_is_there
+from movingfrf.stepping.marching import STRIDE
 from movingfrf.stepping.requirements import require_kinds
 from movingfrf.stepping.schemes import SCHEMES
+from movingfrf.stepping.tie import Tie, stiffness_at_rest, tie_of
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -103,7 +105,7 @@ def duhamel(
     excitation = seen_in_time(profile, vehicle, journey)
     assert excitation.rate is not None
     yields = road.moving_frf(speed=speed, omega=[0.0], **vehicle.offsets)[0].real
-    law = law_of(vehicle)
+    law = tie_of(vehicle)
     held = stiffness_at_rest(law)
     load = np.linalg.solve(np.eye(positions.size) + held @ yields, vehicle.static_loads)
     steady = yields @ load
@@ -292,7 +294,7 @@ def weights(road: SampledGuideway, time_step: float) -> tuple[FloatArray, FloatA
     return later + earlier, later, earlier
 
 
-def _lift(law: Law, time_step: float) -> FloatArray:
+def _lift(law: Tie, time_step: float) -> FloatArray:
     beta, gamma, _, _ = SCHEMES["average_acceleration"]
     return gamma * time_step * law.damping + beta * time_step**2 * law.stiffness
 

@@ -16,10 +16,9 @@ from movingfrf.guideways.beams import EulerBernoulliBeam
 from movingfrf.guideways.foundations import ShearLayer, Spring
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import Track
-from movingfrf.stepping.finite_guideway import (
+from movingfrf.stepping.finite_guideway import SAME_PLACE, FiniteGuideway
+from movingfrf.stepping.finite_track import (
     ENDS,
-    SAME_PLACE,
-    FiniteGuideway,
     absorption,
     bending_length,
     cubic_functions,

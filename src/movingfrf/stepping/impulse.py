@@ -14,10 +14,12 @@ from movingfrf._basics.checks import ValidityWarning, checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import Track
-from movingfrf.stepping.finite_guideway import FiniteGuideway, finite_track
-from movingfrf.stepping.marching import March, no_vehicle
+from movingfrf.stepping.finite_guideway import FiniteGuideway
+from movingfrf.stepping.finite_track import finite_track
+from movingfrf.stepping.marching import March
 from movingfrf.stepping.requirements import require_across, require_stable_scheme
 from movingfrf.stepping.schemes import Scheme, scheme_named
+from movingfrf.stepping.tie import no_vehicle
 
 # What is worth a word: what is left of the response at its end, of a wave that comes back from the ends of the road
 # (both relative to the largest), and the error of the step at the highest frequency of the band, (ω Δt)²/12.

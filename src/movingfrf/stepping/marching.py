@@ -18,71 +18,22 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
+from movingfrf.stepping.exchange import SOLVED, Iteration, exchanged, numba_is_there
 from movingfrf.stepping.factors import BandSolver, SparseSolver, bands_of, half_width, indefinite, solver
-from movingfrf.stepping.finite_guideway import SAME_PLACE, CubicRows, FiniteGuideway
+from movingfrf.stepping.finite_guideway import SAME_PLACE, FiniteGuideway
+from movingfrf.stepping.finite_track import CubicRows
 from movingfrf.stepping.schemes import Scheme
-from movingfrf.vehicles.vehicle import Vehicle
+from movingfrf.stepping.tie import Tie
 
 # Steps between two looks at the keyboard, how many unknowns times steps that may be, and, in NumPy, how many
 # entries of interpolating rows, which are held for all these steps at once.
 STRIDE, WORK, ENTRIES = 20_000, 20_000_000, 1_000_000
-
-# Contact forces [N] that are nothing, and that are beyond all measure: the exchange of forces has run away.
-TINY, HUGE = 1e-9, 1e30
 
 # Unknowns that the compiled band solver needs at least.
 FEWEST = 9
 
 # Entries of the inverse below this share of its diagonal are zero to rounding.
 NEGLIGIBLE = 1e-17
-
-
-class Law(NamedTuple):
-    """What happens at the contacts: a vehicle on springs and dashpots, or nothing but prescribed forces."""
-
-    mass: FloatArray  # (dof, dof)
-    damping: FloatArray  # (dof, dof)
-    stiffness: FloatArray  # (dof, dof)
-    contact_map: FloatArray  # (contact, dof)
-    springs: FloatArray  # (contact,) [N/m]
-    dashpots: FloatArray  # (contact,) [N s/m]
-
-
-def law_of(vehicle: Vehicle) -> Law:
-    """Matrices of a vehicle without its contacts, and its contacts."""
-    if np.isinf(vehicle.springs).any():
-        raise ValueError(
-            "the vehicle has rigid contacts (stiffness = inf), which the time-stepping methods do not know: give "
-            "each contact a finite stiffness [N/m]"
-        )
-    mass, damping, stiffness, contact_map = (np.ascontiguousarray(matrix) for matrix in vehicle.matrices)
-    return Law(mass, damping, stiffness, contact_map, vehicle.springs, vehicle.dashpots)
-
-
-def stiffness_at_rest(law: Law) -> FloatArray:
-    """Force at the contacts per constant displacement below them [N/m], shape (contact, contact).
-
-    More of them than the vehicle has rigid motions share the weight as the road sags.
-    """
-    pushed = law.contact_map.T * law.springs
-    held = law.stiffness + pushed @ law.contact_map
-    return np.diag(law.springs) - pushed.T @ np.linalg.solve(held, pushed)
-
-
-def no_vehicle(contacts: int) -> Law:
-    """Prescribed forces only."""
-    none = np.zeros((0, 0))
-    return Law(none, none, none, np.zeros((contacts, 0)), np.zeros(contacts), np.zeros(contacts))
-
-
-class Iteration(NamedTuple):
-    """How contact forces are found in each step: solved for (tolerance 0), or exchanged until they agree."""
-
-    tolerance: float = 0.0  # relative change of the forces at which they agree
-    most: int = 50
-
-
-SOLVED = Iteration()
 
 
 @dataclass(slots=True)
@@ -145,7 +96,7 @@ class March:
     speed: float
     contacts: FloatArray
     observers: FloatArray
-    law: Law
+    law: Tie
     iteration: Iteration = SOLVED
     compiled: bool | None = None
     observers_travel: bool = True
@@ -334,21 +285,21 @@ class March:
     @cached_property
     def _tables(self) -> dict[str, Any]:
         """What the compiled loops read."""
-        from movingfrf.stepping import compiled
+        from movingfrf.stepping import kernels
 
         road, n = self.road, self.road.dofs
         bands = [bands_of(matrix, 3) for matrix in (self.effective, road.mass, road.damping, road.stiffness)]
         half = (n - 3) // 2
         rows, columns = np.zeros((half, 6)), np.zeros((half, 8))
         core: FloatArray = np.zeros((n - 2 * half, n - 2 * half))
-        smallest = compiled.factorise(bands[0], rows, columns, core)
+        smallest = kernels.factorise(bands[0], rows, columns, core)
         if not smallest > 0 or not np.linalg.eigvalsh(core)[0] > 0:
             raise indefinite()
         core = np.linalg.inv(core)
         reach = self._reach(rows, columns, core)
         first = np.zeros(n, np.int64)
         needs_inverse = bool(len(self.law.mass))
-        inverse = compiled.influence(rows, columns, core, reach, first) if needs_inverse else np.zeros((1, 1))
+        inverse = kernels.influence(rows, columns, core, reach, first) if needs_inverse else np.zeros((1, 1))
         mesh = road.mesh
         assert mesh is not None
         return {
@@ -358,14 +309,14 @@ class March:
 
     def _reach(self, rows: FloatArray, columns: FloatArray, core: FloatArray) -> int:
         """Width outside which a row of the inverse is zero to rounding, judged in the middle of the road."""
-        from movingfrf.stepping import compiled
+        from movingfrf.stepping import kernels
 
         n = self.road.dofs
         reach = 0
         for unknown in (n // 2, n // 2 + 1):
             row = np.zeros(n)
             row[unknown] = 1.0
-            compiled.solve(rows, columns, core, row, np.empty(len(core)))
+            kernels.solve(rows, columns, core, row, np.empty(len(core)))
             seen = np.flatnonzero(np.abs(row) > NEGLIGIBLE * np.abs(row).max())
             reach = max(reach, int(np.abs(seen - unknown).max()))
         return min(n, 2 * reach + 4)
@@ -477,7 +428,7 @@ class March:
                     yielding = np.einsum("jq,jql->jl", inclines, per_force[along])
                     matrix += law.dashpots[:, None] * (lift_v * (yields - own) + self.speed * lift_u * yielding)
                 if self.iteration.tolerance:
-                    force, count = _exchanged(matrix, gap, state.acting - earlier, self.iteration)
+                    force, count = exchanged(matrix, gap, state.acting - earlier, self.iteration)
                     if count < 0:
                         return step, worst
                     worst = max(worst, count)
@@ -555,25 +506,3 @@ class _Rows(NamedTuple):
         """Columns and values of one step, shape (place, entry)."""
         some = slice(step * self.places, (step + 1) * self.places)
         return self.columns[some], self.values[some]
-
-
-def _exchanged(
-    matrix: FloatArray, right: FloatArray, force: FloatArray, iteration: Iteration
-) -> tuple[FloatArray, int]:
-    """Exchange contact forces until they agree; −1 if they do not."""
-    for count in range(1, iteration.most + 1):
-        fresh = right + force - matrix @ force
-        change, size = np.abs(fresh - force).max(), np.abs(fresh).max()
-        force = fresh
-        if change <= iteration.tolerance * size or size < TINY:
-            return force, count
-        if not size < HUGE:
-            break
-    return force, -1
-
-
-def numba_is_there() -> bool:
-    """Tell whether the compiled loops can be used."""
-    from importlib.util import find_spec
-
-    return find_spec("numba") is not None

@@ -13,9 +13,10 @@ from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.version import VERSION
 from movingfrf.results.labels import LOADED, labelled
 from movingfrf.stepping.finite_guideway import FiniteGuideway
-from movingfrf.stepping.marching import March, no_vehicle
+from movingfrf.stepping.marching import March
 from movingfrf.stepping.requirements import require_kinds, require_on_road, require_stable_scheme
 from movingfrf.stepping.schemes import Scheme, scheme_named
+from movingfrf.stepping.tie import no_vehicle
 
 if TYPE_CHECKING:
     import xarray as xr

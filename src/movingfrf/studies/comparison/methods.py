@@ -21,9 +21,10 @@ from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.stepping.coupled import prepared
 from movingfrf.stepping.duhamel import duhamel, duhamel_loads
-from movingfrf.stepping.finite_guideway import FiniteGuideway, bending_length, finite_track
+from movingfrf.stepping.exchange import SOLVED, Iteration, numba_is_there
+from movingfrf.stepping.finite_guideway import FiniteGuideway
+from movingfrf.stepping.finite_track import bending_length, finite_track
 from movingfrf.stepping.impulse import CANCELLING, struck_track
-from movingfrf.stepping.marching import SOLVED, Iteration, numba_is_there
 from movingfrf.stepping.moving_loads import newmark_loads
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle

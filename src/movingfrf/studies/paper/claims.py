@@ -10,7 +10,7 @@ from movingfrf._basics.wording import number
 from movingfrf.reports.page import Column
 from movingfrf.response.simulation import spectral_grid
 from movingfrf.stepping.duhamel import duhamel_loads
-from movingfrf.stepping.finite_guideway import finite_track
+from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, moving_impulse_response
 from movingfrf.studies.comparison.comparison import TARGETS
 from movingfrf.studies.comparison.methods import Case, elements

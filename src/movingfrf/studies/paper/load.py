@@ -17,7 +17,8 @@ from movingfrf.reports import plots
 from movingfrf.reports.page import Column
 from movingfrf.response.line import SpectralGrid
 from movingfrf.stepping.duhamel import duhamel_loads
-from movingfrf.stepping.finite_guideway import FiniteGuideway, finite_track
+from movingfrf.stepping.finite_guideway import FiniteGuideway
+from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import struck_track
 from movingfrf.stepping.moving_loads import newmark_loads
 from movingfrf.studies.comparison.comparison import converged

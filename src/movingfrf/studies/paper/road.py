@@ -14,7 +14,7 @@ from movingfrf.guideways.track import Track
 from movingfrf.reports import plots
 from movingfrf.reports.page import Column
 from movingfrf.response.line import SpectralGrid
-from movingfrf.stepping.finite_guideway import finite_track
+from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, LONGEST, PAPER, moving_impulse_response, struck_track
 from movingfrf.studies.comparison.comparison import quantities, relative_l2
 from movingfrf.studies.paper.drawing import BLACK, BLUE, ORANGE, SKY, canvas, curve, logarithmic, title

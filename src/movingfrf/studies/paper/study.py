@@ -26,7 +26,8 @@ from movingfrf.response.simulation import moving_loads, simulate
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Scenario
-from movingfrf.stepping.finite_guideway import FiniteGuideway, finite_track
+from movingfrf.stepping.finite_guideway import FiniteGuideway
+from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import struck_track
 from movingfrf.stepping.moving_loads import newmark_loads
 from movingfrf.studies.comparison.comparison import Comparison, compare
