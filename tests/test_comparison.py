@@ -17,14 +17,8 @@ import pytest
 import movingfrf as mf
 from movingfrf.commands.main import main
 from movingfrf.scenarios.reading import parse_scenario
-from movingfrf.studies.comparison.comparison import (
-    Point,
-    converged,
-    maximum_error,
-    peak_memory,
-    relative_l2,
-    time_at,
-)
+from movingfrf.studies.comparison.comparison import Point, peak_memory, time_at
+from movingfrf.studies.comparison.convergence import converged, maximum_error, relative_l2
 from movingfrf.studies.comparison.files import as_json, convergence_as_json, curve_as_csv, table_as_csv
 from movingfrf.studies.comparison.methods import Case, elements
 from movingfrf.studies.comparison.page import render

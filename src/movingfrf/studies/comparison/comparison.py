@@ -15,7 +15,7 @@ import sys
 import time
 import tracemalloc
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -23,22 +23,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import SolveError, ValidityWarning
+from movingfrf._basics.checks import ValidityWarning
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Scenario
-from movingfrf.studies.comparison.methods import (
-    AROUND,
-    WITH_LOADS,
-    WITH_VEHICLE,
-    Case,
-    Method,
-    chosen,
-    elements,
-    newmark,
-    stepped,
+from movingfrf.studies.comparison.convergence import (
+    TARGETS,
+    Reference,
+    aligned,
+    converged,
+    maximum_error,
+    relative_l2,
 )
+from movingfrf.studies.comparison.methods import WITH_LOADS, WITH_VEHICLE, Case, Method, chosen, elements
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,20 +44,11 @@ if TYPE_CHECKING:
 # Steps of the error–time figure, relative to the scenario's own: powers of two, so that all have times in common.
 STEPS = (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)
 
-# The converged answer: its movement at which it counts as converged, and at which it is none; how often it is
-# refined at most; the longest road around the vehicle, in lengths over which it bends.
-CONVERGED, HOPELESS, REFINEMENTS, WIDEST = 5e-6, 5e-2, 4, 200.0
-
-# Errors at which methods are compared for time, and the share of them that the ends of a road may add.
-TARGETS, UNSEEN = (1e-3, 1e-4), 0.2
-
 # Runs that are timed: until so many, or until they have taken so long together [s].
 RUNS, PATIENCE = 3, 2.0
 
 # A first run, which compiles and fills caches, is this long [s].
 WARM_UP = 0.2
-
-Quantities = dict[str, FloatArray]
 
 
 class Row(NamedTuple):
@@ -86,17 +74,6 @@ class Point(NamedTuple):
     element: float
     seconds: float
     relative_l2: dict[str, float]
-
-
-class Reference(NamedTuple):
-    """The converged answer, and by how much it still moved when it was refined last."""
-
-    quantities: Quantities
-    time_step: float  # of what is kept
-    movement: dict[str, float]
-    finest_step: float
-    finest_element: float
-    around: float  # road at each side that the compared errors do not see, in lengths over which it bends
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -199,159 +176,6 @@ def _quiet() -> Iterator[None]:
         yield
 
 
-def quantities(result: xr.Dataset, scenario: Scenario) -> Quantities:
-    """Pick what is compared of a result: arrays of shape (time, channel).
-
-    Parameters
-    ----------
-    result : xarray.Dataset
-        What any method returned.
-    scenario : Scenario
-        The case.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Dynamic contact force [N], deflection without the sag [m], acceleration of the degrees of freedom that touch
-        the road [m/s²]; the deflection alone under prescribed loads.
-    """
-    if scenario.vehicle is None:
-        return {"deflection": result.deflection.values}
-    wheels = np.flatnonzero(np.abs(np.asarray(scenario.vehicle.contact_map)).any(axis=0))
-    return {
-        "contact_force": result.contact_force.values,
-        "deflection": result.deflection.values - result.static_deflection.values,
-        "wheel_acceleration": result.acceleration.values[:, wheels],
-    }
-
-
-def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
-    """Lengthen the road, then refine mesh and step together, until the extrapolated answer no longer moves.
-
-    Errors fall with the square of the step, or faster, so that (4 fine − coarse)/3 is the better answer.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        The case.
-    progress : callable
-        As everywhere.
-
-    Returns
-    -------
-    Reference
-        At the scenario's own steps.
-
-    Raises
-    ------
-    SolveError
-        If the answer does not converge.
-    """
-    step, element = scenario.journey.time_step, elements(scenario)[0]
-    prepare = stepped if scenario.loads is None else newmark
-
-    def solved(level: int, around: float) -> Quantities:
-        case = Case(scenario=scenario, time_step=step / 2**level, element=element / 2**level, around=around)
-
-        def told(stage: str, fraction: float) -> None:
-            progress(f"converged answer, refinement {level}, {stage}", fraction)
-
-        result = prepare(case, travels=True, progress=told)()
-        return {name: values[:: 2**level].copy() for name, values in quantities(result, scenario).items()}
-
-    # First the length of the road, coarsely: what comes back from its ends changes the answer like a mesh error.
-    around, coarse, enough = AROUND, solved(0, AROUND), math.nan
-    while True:
-        wider = solved(0, 2 * around)
-        from_ends = relative_l2(coarse, wider)
-        if math.isnan(enough) and next(iter(from_ends.values())) <= UNSEEN * min(TARGETS):
-            enough = around
-        if max(from_ends.values()) <= CONVERGED or around >= WIDEST:
-            break
-        around, coarse = 2 * around, wider
-    answers: list[Quantities] = []
-    movement: dict[str, float] = {}
-    for level in range(1, REFINEMENTS + 1):
-        fine = solved(level, around)
-        answers.append({name: (4 * fine[name] - coarse[name]) / 3 for name in fine})
-        coarse = fine
-        if len(answers) > 1:
-            movement = relative_l2(answers[-2], answers[-1])
-            if max(movement.values()) <= CONVERGED:
-                break
-    movement = {name: max(moved, from_ends[name]) for name, moved in movement.items()}
-    if not min(movement.values()) <= HOPELESS:
-        raise SolveError(
-            f"the answer from the time domain does not converge: it still moves by {min(movement.values()):.1e} "
-            f"when step and elements are halved for the last time, to {step / 2**level:.3g} s; the scenario's "
-            f"time_step, {step:g} s, is too long, or its loads begin or end too abruptly"
-        )
-    enough = around if math.isnan(enough) else enough
-    return Reference(answers[-1], step, movement, step / 2**level, element / 2**level, enough)
-
-
-def relative_l2(found: Quantities, wanted: Quantities) -> dict[str, float]:
-    """Relative L2 difference of each quantity, its worst channel.
-
-    Parameters
-    ----------
-    found, wanted : dict of str to ndarray
-        Quantities at the same times.
-
-    Returns
-    -------
-    dict of str to float
-        By quantity; of a channel that is zero the difference itself.
-    """
-    return {name: _worst(found[name] - wanted[name], wanted[name], _root_mean_square) for name in wanted}
-
-
-def maximum_error(found: Quantities, wanted: Quantities) -> dict[str, float]:
-    """Largest difference of each quantity over its largest value, the worst channel.
-
-    Parameters
-    ----------
-    found, wanted : dict of str to ndarray
-        Quantities at the same times.
-
-    Returns
-    -------
-    dict of str to float
-        By quantity.
-    """
-    return {name: _worst(found[name] - wanted[name], wanted[name], _largest) for name in wanted}
-
-
-def _root_mean_square(values: FloatArray) -> FloatArray:
-    size: FloatArray = np.sqrt(np.mean(values**2, axis=0))
-    return size
-
-
-def _largest(values: FloatArray) -> FloatArray:
-    size: FloatArray = np.abs(values).max(axis=0)
-    return size
-
-
-def _worst(difference: FloatArray, wanted: FloatArray, size: Callable[[FloatArray], FloatArray]) -> float:
-    scale = size(wanted)
-    return float((size(difference) / np.where(scale > 0, scale, 1.0)).max())
-
-
-def _aligned(result: xr.Dataset, case: Case, reference: Reference) -> tuple[Quantities, Quantities]:
-    """Quantities of a result and of the converged answer at the times that both have."""
-    found = quantities(result, case.scenario)
-    ratio = case.time_step / reference.time_step
-    # The coarser of the two steps is a whole multiple of the other.
-    mine, its = (1, round(ratio)) if ratio >= 1 else (round(1 / ratio), 1)
-    pairs = {name: (found[name][::mine], reference.quantities[name][::its]) for name in found}
-    count = min(len(values) for pair in pairs.values() for values in pair)
-    if case.scenario.vehicle is not None:
-        # At the end of the journey a footprint reaches over road that nobody knows.
-        ahead = max(contact.footprint for contact in case.scenario.vehicle.contacts) / (2 * case.journey.speed)
-        count -= math.ceil(ahead / max(case.time_step, reference.time_step))
-    return {name: a[:count] for name, (a, _) in pairs.items()}, {name: b[:count] for name, (_, b) in pairs.items()}
-
-
 def _warm_up(case: Case, methods: Mapping[str, Method], progress: Progress) -> None:
     """Run each method once, briefly: compiled loops are compiled, modules loaded."""
     journey = case.scenario.journey
@@ -386,7 +210,7 @@ def _row(
         warnings.simplefilter("always", ValidityWarning)
         method.prepare(case)()
     said = [str(warning.message) for warning in caught if issubclass(warning.category, ValidityWarning)]
-    found, wanted = _aligned(result, case, reference)
+    found, wanted = aligned(result, case, reference)
     if memory:
         progress(f"{name}, memory", 0.5)
     return Row(
@@ -420,7 +244,7 @@ def _curve(
     for number, (name, run) in enumerate(runs):
         progress(f"error over time: {name}, {run.time_step:g} s", number / len(runs))
         setup, solve, result = _timed(methods[name], run, timings)
-        error = relative_l2(*_aligned(result, run, reference))
+        error = relative_l2(*aligned(result, run, reference))
         element = run.element if methods[name].divides else math.nan
         points.append(Point(name, run.time_step, element, setup + solve, error))
     return points

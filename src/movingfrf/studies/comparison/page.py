@@ -12,7 +12,8 @@ from movingfrf.reports import illustrations, plots
 from movingfrf.reports.illustrations import Illustration
 from movingfrf.reports.page import Column, Row, Setting, Table, page
 from movingfrf.stepping.exchange import numba_is_there
-from movingfrf.studies.comparison.comparison import TARGETS, Comparison, Point, ratios
+from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
+from movingfrf.studies.comparison.convergence import TARGETS
 from movingfrf.studies.comparison.methods import BESIDE, WITH_LOADS, WITH_VEHICLE, compiles
 
 if TYPE_CHECKING:

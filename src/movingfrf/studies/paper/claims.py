@@ -12,7 +12,7 @@ from movingfrf.response.simulation import spectral_grid
 from movingfrf.stepping.duhamel import duhamel_loads
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, moving_impulse_response
-from movingfrf.studies.comparison.comparison import TARGETS
+from movingfrf.studies.comparison.convergence import TARGETS
 from movingfrf.studies.comparison.methods import Case, elements
 from movingfrf.studies.paper import operations
 from movingfrf.studies.paper.load import LOAD

@@ -21,7 +21,7 @@ from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import struck_track
 from movingfrf.stepping.moving_loads import newmark_loads
-from movingfrf.studies.comparison.comparison import converged
+from movingfrf.studies.comparison.convergence import converged
 from movingfrf.studies.paper import operations
 from movingfrf.studies.paper.drawing import (
     BLACK,

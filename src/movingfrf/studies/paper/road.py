@@ -16,7 +16,7 @@ from movingfrf.reports.page import Column
 from movingfrf.response.line import SpectralGrid
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, LONGEST, PAPER, moving_impulse_response, struck_track
-from movingfrf.studies.comparison.comparison import quantities, relative_l2
+from movingfrf.studies.comparison.convergence import quantities, relative_l2
 from movingfrf.studies.paper.drawing import BLACK, BLUE, ORANGE, SKY, canvas, curve, logarithmic, title
 from movingfrf.studies.paper.outcome import UNJUDGED, DataTable, Outcome, Plot, Statement, verdict
 from movingfrf.studies.paper.study import FALLING, TRUNCATION, Study, closed_form, quiet, scenario

@@ -14,7 +14,7 @@ from movingfrf.reports import plots
 from movingfrf.reports.page import Column
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.spectra.iso import IsoRoad
-from movingfrf.studies.comparison.comparison import TARGETS
+from movingfrf.studies.comparison.convergence import TARGETS
 from movingfrf.studies.comparison.methods import elements
 from movingfrf.studies.paper.drawing import (
     BLACK,
