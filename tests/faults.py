@@ -128,7 +128,7 @@ FAULTS = [
     ),
     Fault(
         "load's road that does not fade",
-        "response/simulation.py",
+        "response/moving_loads.py",
         "frf * grid.compliance(some)[:, None, None]",
         "frf * 1.0",
     ),
@@ -140,7 +140,7 @@ FAULTS = [
         "row[self.samples :] = 0.0",
     ),
     Fault("acceleration sign", "response/line.py", "(1j * self.omega(", "(1 * self.omega("),
-    Fault("velocity for acceleration", "response/histories.py", "derivative=2", "derivative=1"),
+    Fault("velocity for acceleration", "response/solve.py", "derivative=2", "derivative=1"),
     # Coupling.
     Fault("roughness sign", "response/solve.py", "displacement = -roughness[", "displacement = +roughness["),
     Fault(
@@ -152,11 +152,11 @@ FAULTS = [
     Fault("deflection lifts the vehicle", "response/solve.py", "displacement[:kept] +=", "displacement[:kept] -="),
     Fault(
         "sag leaves the loads alone",
-        "response/solve.py",
+        "response/system.py",
         "np.linalg.solve(np.eye(len(frf)) + stiffness @ frf, system.vehicle.static_loads)",
         "system.vehicle.static_loads",
     ),
-    Fault("steady basin reversed", "response/solve.py", "deflection=frf @ load", "deflection=frf.T @ load"),
+    Fault("steady basin reversed", "response/system.py", "deflection=frf @ load", "deflection=frf.T @ load"),
     Fault("static sag missing", "response/simulation.py", "deflection += steady.deflection", "pass"),
     Fault("footprint twice as long", "vehicles/contact.py", "half = 0.5 *", "half = 1.0 *"),
     Fault("cams twice as far apart", "vehicles/contact.py", "0.5 * self.cams", "1.0 * self.cams"),
@@ -648,13 +648,13 @@ FAULTS = [
     Fault(
         "crossings by the fourth moment", "response/random.py", "_rate(second, variance)", "_rate(fourth, second)"
     ),
-    Fault("lift-offs too rare", "response/random.py", "(crossing) * np.exp(-0.5", "(crossing) * np.exp(-1.0"),
-    Fault("lift-offs unseen", "response/random.py", "if often > LIFT_OFFS or part", "if False and part"),
+    Fault("lift-offs too rare", "response/statistics.py", "(crossing) * np.exp(-0.5", "(crossing) * np.exp(-1.0"),
+    Fault("lift-offs unseen", "response/statistics.py", "if often > LIFT_OFFS or part", "if False and part"),
     Fault("end of the band unseen", "response/random.py", "if share <= AT_THE_END:", "if share >= 0:"),
     Fault("weighting of amplitudes", "response/random.py", "lines.frequency)) ** 2", "lines.frequency))"),
     Fault(
         "first level counted too often",
-        "response/random.py",
+        "response/statistics.py",
         "- 0.5 * exceeded[..., 0]",
         "+ 50 * exceeded[..., 0]",
     ),
@@ -673,13 +673,13 @@ FAULTS = [
     ),
     Fault("damping always blamed", "response/random.py", "NEXT_TO_NONE = 1e-9", "NEXT_TO_NONE = 1e9"),
     Fault("history taken for a spectrum", "metrics/fatigue.py", '"contact_force_density" not in', '"" in'),
-    Fault("threads that wait", "response/transfer.py", "with unthreaded(contacts):", "with unthreaded(1):"),
+    Fault("threads that wait", "response/solve.py", "with unthreaded(contacts):", "with unthreaded(1):"),
     Fault("wide trapezoids", "metrics/fatigue.py", "(0.5 * (gaps[1:]", "(1.0 * (gaps[1:]"),
     Fault("coarse panels", "response/quadrature.py", "UNRESOLVED = 1e-3", "UNRESOLVED = 1e3"),
     Fault("panels that overlap", "response/quadrature.py", "= low[~rough], high", "= low[~rough] - 0.01, high"),
     Fault(
         "road that lifts the vehicle twice",
-        "response/transfer.py",
+        "response/solve.py",
         "[some] - roughness[some]",
         "[some] + roughness[some]",
     ),

@@ -82,7 +82,7 @@ _WHERE = {
     "side_by_side": "roughness.combination",
     "rolled": "roughness.combination",
     "simulate": "response.simulation",
-    "moving_loads": "response.simulation",
+    "moving_loads": "response.moving_loads",
     "transfer": "response.transfer",
     "random_response": "response.random",
     "spectral_fatigue": "metrics.fatigue",

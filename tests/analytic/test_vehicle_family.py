@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.response.solve import joined
 from movingfrf.response.stability import along_the_axis, growing_vibrations
+from movingfrf.response.system import joined
 from tests.helpers import (
     DAMPED,
     HALF_TRUCK,

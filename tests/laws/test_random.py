@@ -17,9 +17,9 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import movingfrf as mf
 from movingfrf.metrics.fatigue import METHODS
 from movingfrf.metrics.measures import random_measures
+from movingfrf.response.batches import solve_contacts
 from movingfrf.response.quadrature import resolved
-from movingfrf.response.random import peak_factor
-from movingfrf.response.solve import solve_contacts
+from movingfrf.response.statistics import peak_factor
 from movingfrf.results.labels import RANDOM_QUANTITIES
 from tests.helpers import DAMPED, QUARTER_CAR, QUARTER_TRUCK, UNDAMPED, VEHICLES
 

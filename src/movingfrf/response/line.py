@@ -9,7 +9,7 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory
 from movingfrf._basics.checks import checking
 from movingfrf._basics.smooth import smooth_step
 
@@ -35,6 +35,10 @@ TOGETHER = 4
 # One-sided differences of fourth and third order for slope and curvature at the last sample (latest first).
 SLOPE = np.array([25 / 12, -4.0, 3.0, -4 / 3, 1 / 4])
 CURVATURE = np.array([35 / 12, -26 / 3, 19 / 2, -14 / 3, 11 / 12])
+
+# Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
+# computation, measured on an hour of travel.
+BYTES_PER_SAMPLE = 60
 
 
 class Histories(NamedTuple):
@@ -233,3 +237,26 @@ class SpectralGrid:
 def _fading(count: int) -> FloatArray:
     """From just below 1 to 0 over `count` samples."""
     return 1.0 - smooth_step(np.arange(1, count + 1) / count)
+
+
+def require_record(duration: float, settling: float, time_step: float, channels: int) -> None:
+    """Refuse a record that memory would not hold.
+
+    Parameters
+    ----------
+    duration, settling : float
+        Length of the record and of the padding behind it [s].
+    time_step : float
+        Step in time [s].
+    channels : int
+        Histories that are computed: contacts and degrees of freedom, or loads and points.
+
+    Raises
+    ------
+    ValueError
+        With what is needed and what is free.
+    """
+    require_memory(
+        BYTES_PER_SAMPLE * channels * (duration + settling) / time_step,
+        f"a record of {duration:g} s in steps of {time_step:g} s",
+    )

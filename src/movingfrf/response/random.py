@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtr
 
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
@@ -29,9 +28,11 @@ from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.metrics.comfort import WEIGHTING_OF
 from movingfrf.metrics.loads import load_coefficient
 from movingfrf.response.quadrature import Lines, Unresolved, resolved
-from movingfrf.response.solve import System, joined, steady_state
+from movingfrf.response.solve import responses
 from movingfrf.response.stability import along_the_axis, require_stable
-from movingfrf.response.transfer import BYTES_PER_VALUE, coordinates, responses
+from movingfrf.response.statistics import lift_off, lifting_off, peak_factor, spectral_rate
+from movingfrf.response.system import System, joined, steady_state
+from movingfrf.response.transfer import BYTES_PER_VALUE, coordinates
 from movingfrf.results.findings import Finding
 from movingfrf.results.labels import RANDOM, RANDOM_QUANTITIES, labelled
 from movingfrf.roughness.spectra.coherence import Coherence
@@ -54,12 +55,8 @@ NEXT_TO_NONE = 1e-9
 # Powers of the frequency whose integrals the statistics need.
 POWERS = (0, 2, 4)
 
-# Levels over which the peak factor is integrated.
-PEAK_POINTS = 400
-
-# From which on it is worth a word: expected lift-offs within the exposure, share of the time lifted off, and share
-# of a contact force's variance in the highest tenth of the frequencies.
-LIFT_OFFS, LIFTED_OFF, AT_THE_END = 1.0, 1e-3, 0.01
+# Share of the variance of a contact force that may lie in the highest tenth of the band.
+AT_THE_END = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -201,10 +198,10 @@ def random_response(
     lines = _resolved(densities, vehicle, _edges(spectrum, speed))
     statistics = _statistics(vehicle, lines, exposure)
     force_rms, crossing = statistics["contact_force_rms"], statistics["contact_force_crossing_rate"]
-    lift_off_share, lift_off_rate = _lift_off(steady.load, force_rms, crossing)
+    lift_off_share, lift_off_rate = lift_off(steady.load, force_rms, crossing)
     critical_speed = float(guideway.critical_speed)
     found = [
-        *_lifting_off(lift_off_share, lift_off_rate, exposure),
+        *lifting_off(lift_off_share, lift_off_rate, exposure),
         *find.near_critical(speed, critical_speed),
         *_at_the_end(lines, vehicle, spectrum),
     ]
@@ -242,38 +239,6 @@ def random_response(
         "findings": find.announced(found),
     }
     return labelled(values, RANDOM, attributes)
-
-
-def peak_factor(crossings: ArrayLike) -> FloatArray:
-    """Give the expected largest value of a Gaussian process, over its root mean square.
-
-    Upcrossings of a high level are rare and independent, so that the largest value stays below u with the
-    probability exp(−N e^{−u²/2}), N the expected number of upcrossings of zero; the mean of that distribution is
-    returned. Its expansion for large N is Davenport's √(2 ln N) + 0.5772/√(2 ln N). Where the vibration comes in
-    bursts (an irregularity near 1) crossings are not independent and the factor is somewhat too large.
-
-    Parameters
-    ----------
-    crossings : array_like
-        Expected number of upcrossings of zero, dimensionless.
-
-    Returns
-    -------
-    ndarray
-        Peak factor, like `crossings`.
-
-    Examples
-    --------
-    >>> peak_factor([100.0, 1e4]).round(2).tolist()
-    [3.2, 4.42]
-    """
-    count = np.asarray(crossings, float)[..., None]
-    # Beyond the upper end the chance is below e^{-32}. Of an even, analytic function the trapezoidal rule converges
-    # exponentially.
-    end = np.sqrt(2 * np.log(np.maximum(count, 1.0))) + 8.0
-    level, step = end * np.linspace(0.0, 1.0, PEAK_POINTS), end[..., 0] / (PEAK_POINTS - 1)
-    exceeded: FloatArray = -np.expm1(-count * np.exp(-0.5 * level**2))
-    return step * (exceeded.sum(axis=-1) - 0.5 * exceeded[..., 0])
 
 
 def _check_spectrum(check: Checks, spectrum: object) -> None:
@@ -389,7 +354,7 @@ def _statistics(vehicle: Vehicle, lines: Lines, exposure: float) -> dict[str, Fl
     variance, second, fourth = (lines.moment(power) for power in POWERS)
     rounding = variance < ROUNDING * (_negligible(vehicle) @ variance)
     variance, second, fourth = (np.where(rounding, 0.0, moment) for moment in (variance, second, fourth))
-    rms, crossing, peaks = np.sqrt(variance), _rate(second, variance), _rate(fourth, second)
+    rms, crossing, peaks = np.sqrt(variance), spectral_rate(second, variance), spectral_rate(fourth, second)
     columns = {
         "rms": rms,
         "crossing_rate": crossing,
@@ -405,11 +370,6 @@ def _statistics(vehicle: Vehicle, lines: Lines, exposure: float) -> dict[str, Fl
     }
 
 
-def _rate(above: FloatArray, below: FloatArray) -> FloatArray:
-    """√(mₖ₊₂/mₖ) [1/s]; nan for what does not move."""
-    return np.sqrt(np.divide(above, below, out=np.full_like(below, np.nan), where=below > 0))
-
-
 def _weighted(vehicle: Vehicle, lines: Lines) -> FloatArray:
     """Root mean square acceleration with the weighting of its unit, shape (dof,)."""
     from movingfrf.metrics.comfort import weighting
@@ -422,26 +382,6 @@ def _weighted(vehicle: Vehicle, lines: Lines) -> FloatArray:
         mine = np.asarray(units) == unit
         found[mine] = np.sqrt((lines.bandwidth * gain) @ density[:, mine])
     return found
-
-
-def _lift_off(load: FloatArray, rms: FloatArray, crossing: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Share of the time with a tensile total force, and how often it turns so [1/s], by Gauss and Rice."""
-    level = np.divide(load, rms, out=np.copysign(np.full_like(load, np.inf), load), where=rms > 0)
-    return ndtr(-level), np.nan_to_num(crossing) * np.exp(-0.5 * level**2)
-
-
-def _lifting_off(share: FloatArray, rate: FloatArray, exposure: float) -> list[Finding]:
-    """Contacts that are likely to lift off within the exposure."""
-    return [
-        Finding(
-            "contact_lost",
-            f"contact {contact} would lift off the road about {often:.2g} times in {exposure:g} s, for "
-            f"{100 * part:.2g} % of the time; the linear contact pulls there instead, so extremes of forces and "
-            "accelerations are not to be relied on",
-        )
-        for contact, (part, often) in enumerate(zip(share, rate * exposure, strict=True))
-        if often > LIFT_OFFS or part > LIFTED_OFF
-    ]
 
 
 def _at_the_end(lines: Lines, vehicle: Vehicle, spectrum: Spectrum) -> list[Finding]:

@@ -7,40 +7,17 @@ constant; what the roughness adds to that state solves (I + D G) F = D R.
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.guideways.guideway import Guideway
-from movingfrf.response.line import SpectralGrid
-from movingfrf.vehicles.dynamics import Dynamics
-from movingfrf.vehicles.vehicle import Vehicle
-
-# Frequencies solved at a time: their arrays stay within the processor's cache. Of many contacts, fewer.
-CHUNK, ENTRIES = 4096, 2**18
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SteadyState:
-    """Travel on a smooth road: what is constant in time.
-
-    Parameters
-    ----------
-    load : ndarray, shape (contact,)
-        Contact forces [N].
-    deflection : ndarray, shape (contact,)
-        Deflection under each contact [m].
-    """
-
-    load: FloatArray
-    deflection: FloatArray
+from movingfrf.response.batches import chunk_for, product, solve_contacts, unthreaded
+from movingfrf.response.line import Histories, SpectralGrid
+from movingfrf.response.system import System
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -60,148 +37,6 @@ class CoupledSpectra:
     force: ComplexArray
     deflection: ComplexArray
     motion: ComplexArray
-
-
-class Sample(NamedTuple):
-    """Both sides of the contacts at some frequencies."""
-
-    omega: ComplexArray  # (frequency,)
-    frf: ComplexArray  # (frequency, receiver, source) [m/N]
-    stiffness: ComplexArray  # (frequency, contact, contact) [N/m]
-
-    def matrices(self) -> ComplexArray:
-        """I + D G, shape (frequency, contact, contact): singular at the poles of the coupled system."""
-        matrices: ComplexArray = np.eye(self.frf.shape[1]) + product(self.stiffness, self.frf)
-        return matrices
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class System:
-    """A guideway and a vehicle that travels on it; made by `joined`.
-
-    Parameters
-    ----------
-    guideway : Guideway
-        The road.
-    vehicle : Vehicle
-        The vehicle.
-    speed : float
-        Speed [m/s].
-    dynamics : Dynamics
-        What `vehicle.dynamics()` returns, computed once.
-    """
-
-    guideway: Guideway
-    vehicle: Vehicle
-    speed: float
-    dynamics: Dynamics
-
-    def sample(self, omega: ComplexArray) -> Sample:
-        """Evaluate both sides at some frequencies [rad/s]."""
-        frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
-        return Sample(omega, frf, self.dynamics.stiffness(omega))
-
-    def samples(self, *omegas: ComplexArray) -> list[Sample]:
-        """Evaluate both sides at several sets of frequencies [rad/s] in one go."""
-        ends = np.cumsum([0, *(omega.size for omega in omegas)])
-        whole = self.sample(np.concatenate(omegas))
-        return [Sample(*(part[first:last] for part in whole)) for first, last in pairwise(ends)]
-
-    def motion(self, omega: ComplexArray, displacement: ComplexArray) -> ComplexArray:
-        """Motion of the vehicle (frequency, dof) that is displaced below its contacts (frequency, contact)."""
-        return self.dynamics.response(omega, displacement)[0]
-
-
-def joined(guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
-    """Put a vehicle on a guideway.
-
-    Parameters
-    ----------
-    guideway : Guideway
-        The road.
-    vehicle : Vehicle
-        The vehicle.
-    speed : float
-        Speed [m/s].
-
-    Returns
-    -------
-    System
-        The two together.
-    """
-    return System(guideway, vehicle, speed, vehicle.dynamics())
-
-
-def chunk_for(contacts: int) -> int:
-    """Frequencies to solve at a time with so many contacts."""
-    return max(min(CHUNK, ENTRIES // contacts**2), 16)
-
-
-def unthreaded(contacts: int) -> AbstractContextManager[object]:
-    """Keep LAPACK to one thread: many small matrices gain nothing by two, and lose tenfold if one has to wait."""
-    return threadpool_limits(limits=1) if contacts > 2 else nullcontext()
-
-
-def solve_contacts(frf: ComplexArray, stiffness: ComplexArray, gap: ComplexArray) -> ComplexArray:
-    """Solve (I + D G) F = D R for each frequency.
-
-    Parameters
-    ----------
-    frf : ndarray, shape (frequency, contact, contact)
-        Moving FRF G [m/N].
-    stiffness : ndarray, shape (frequency, contact, contact)
-        Dynamic stiffness D of the vehicle [N/m].
-    gap : ndarray, shape (frequency, contact, case)
-        Elevation R under the contacts [m].
-
-    Returns
-    -------
-    ndarray, shape (frequency, contact, case)
-        Contact forces F [N].
-    """
-    count = frf.shape[1]
-    system = np.eye(count) + product(stiffness, frf)
-    right = product(stiffness, gap)
-    if count == 1:
-        return right / system
-    if count == 2:  # Cramer's rule: several times faster than LAPACK on batches of this size
-        (a, b), (c, d) = (system[:, row, :, None].swapaxes(0, 1) for row in range(2))
-        determinant = a * d - b * c
-        front, rear = right[:, 0], right[:, 1]
-        solution = np.empty((2, *front.shape[::-1]), complex).T.swapaxes(1, 2)
-        solution[:, 0] = (d * front - b * rear) / determinant
-        solution[:, 1] = (a * rear - c * front) / determinant
-        return solution
-    return np.linalg.solve(system, right)
-
-
-def product(left: ComplexArray, right: ComplexArray) -> ComplexArray:
-    """Matrix product for each frequency, shapes (frequency, i, j) and (frequency, j, k)."""
-    if left.shape[1] > 2:
-        return left @ right
-    # Up to two contacts the loops over i, j and k are the short ones: let the processor loop over frequency.
-    return np.add.reduce([left[:, :, j, None] * right[:, j, None, :] for j in range(left.shape[2])])
-
-
-def steady_state(system: System, at_rest: Sample) -> SteadyState:
-    """Steady travel on a smooth road.
-
-    Parameters
-    ----------
-    system : System
-        Vehicle and road.
-    at_rest : Sample
-        Both sides at ω = 0.
-
-    Returns
-    -------
-    SteadyState
-        Loads and deflections. With more contacts than rigid motions the sag of the road redistributes the
-        weight: (I + D G) F₀ = F_s at ω = 0.
-    """
-    frf, stiffness = at_rest.frf[0].real, at_rest.stiffness[0].real
-    load = np.linalg.solve(np.eye(len(frf)) + stiffness @ frf, system.vehicle.static_loads)
-    return SteadyState(load=load, deflection=frf @ load)
 
 
 def couple(
@@ -260,3 +95,88 @@ def couple(
             f"the coupled response at {system.speed:g} m/s exceeds the range of floating-point numbers"
         )
     return CoupledSpectra(force=force, deflection=deflection, motion=motion)
+
+
+class CoupledHistories(NamedTuple):
+    """Histories of what the roughness adds to the steady state."""
+
+    force: Histories
+    deflection: Histories
+    motion: Histories
+    acceleration: Histories
+
+
+def histories(spectra: CoupledSpectra, grid: SpectralGrid) -> CoupledHistories:
+    """Transform coupled spectra to time.
+
+    Parameters
+    ----------
+    spectra : CoupledSpectra
+        What `couple` returned.
+    grid : SpectralGrid
+        The grid they were computed on.
+
+    Returns
+    -------
+    Response
+        Dynamic force [N], deflection [m], motion [m or rad] and acceleration [m/s² or rad/s²].
+    """
+    scratch = grid.scratch()
+    return CoupledHistories(
+        grid.to_histories(spectra.force, scratch=scratch),
+        grid.to_histories(spectra.deflection, scratch=scratch),
+        grid.to_histories(spectra.motion, scratch=scratch),
+        grid.to_histories(spectra.motion, derivative=2, scratch=scratch),
+    )
+
+
+class Responses(NamedTuple):
+    """What a roughness under the contacts adds to the steady state; every array (frequency, output, case)."""
+
+    force: ComplexArray  # [N]
+    deflection: ComplexArray  # [m]
+    motion: ComplexArray  # [m or rad]
+
+
+def responses(system: System, omega: ComplexArray, roughness: ComplexArray) -> Responses:
+    """Solve the coupled system for any number of cases of roughness under the contacts.
+
+    Parameters
+    ----------
+    system : System
+        Vehicle and road.
+    omega : ndarray, shape (frequency,)
+        Angular frequency [rad/s].
+    roughness : ndarray, shape (frequency, contact, case)
+        Elevation under the contacts [m].
+
+    Returns
+    -------
+    Responses
+        Force and deflection at the contacts, and motion of the vehicle.
+
+    Raises
+    ------
+    SolveError
+        If a frequency is singular.
+    """
+    vehicle, cases = system.vehicle, roughness.shape[2]
+    contacts, dofs = len(vehicle.contacts), len(vehicle.dof_names)
+    found = Responses(*(np.empty((omega.size, outputs, cases), complex) for outputs in (contacts, contacts, dofs)))
+    step = chunk_for(contacts)
+    with unthreaded(contacts):
+        for first in range(0, omega.size, step):
+            some = slice(first, first + step)
+            _, frf, stiffness = system.sample(omega[some])
+            found.force[some] = solve_contacts(frf, stiffness, roughness[some])
+            found.deflection[some] = product(frf, found.force[some])
+            displacement = found.deflection[some] - roughness[some]
+            for case in range(cases):
+                found.motion[some, :, case] = system.motion(omega[some], displacement[:, :, case])
+    singular = ~np.isfinite(sum(np.abs(part).sum(axis=(1, 2)) for part in found))
+    if singular.any():
+        raise SolveError(
+            f"vehicle and guideway have no finite response at {omega[singular][0].real / (2 * np.pi):.6g} Hz and "
+            f"{system.speed:g} m/s: a vibration without damping is driven at its own frequency"
+        )
+    return found

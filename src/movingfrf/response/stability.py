@@ -6,7 +6,8 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import SolveError
-from movingfrf.response.solve import Sample, System, unthreaded
+from movingfrf.response.batches import unthreaded
+from movingfrf.response.system import Sample, System
 from movingfrf.vehicles.vehicle import Vehicle
 
 # The path runs this far below the real axis, relative to the frequency: a growth per radian too slow to see.

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 import movingfrf.results.findings as find
-from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
-from movingfrf._basics.checks import SolveError, checking
+from movingfrf._basics.arrays import FloatArray, require_memory
+from movingfrf._basics.checks import checking
 from movingfrf._basics.version import VERSION
 from movingfrf.guideways.guideway import Guideway, require_guideway
-from movingfrf.response.solve import System, chunk_for, joined, product, solve_contacts, unthreaded
+from movingfrf.response.solve import responses
 from movingfrf.response.stability import along_the_axis, require_stable
+from movingfrf.response.system import joined
 from movingfrf.results.labels import TRANSFER, labelled
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
@@ -23,14 +24,6 @@ if TYPE_CHECKING:
 
 # Bytes per frequency, output and contact at the peak of a computation.
 BYTES_PER_VALUE = 100
-
-
-class Responses(NamedTuple):
-    """What a roughness under the contacts adds to the steady state; every array (frequency, output, case)."""
-
-    force: ComplexArray  # [N]
-    deflection: ComplexArray  # [m]
-    motion: ComplexArray  # [m or rad]
 
 
 def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: ArrayLike) -> xr.Dataset:
@@ -111,50 +104,6 @@ def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: A
         "findings": find.announced(find.near_critical(speed, critical_speed)),
     }
     return labelled(values, TRANSFER, attributes)
-
-
-def responses(system: System, omega: ComplexArray, roughness: ComplexArray) -> Responses:
-    """Solve the coupled system for any number of cases of roughness under the contacts.
-
-    Parameters
-    ----------
-    system : System
-        Vehicle and road.
-    omega : ndarray, shape (frequency,)
-        Angular frequency [rad/s].
-    roughness : ndarray, shape (frequency, contact, case)
-        Elevation under the contacts [m].
-
-    Returns
-    -------
-    Responses
-        Force and deflection at the contacts, and motion of the vehicle.
-
-    Raises
-    ------
-    SolveError
-        If a frequency is singular.
-    """
-    vehicle, cases = system.vehicle, roughness.shape[2]
-    contacts, dofs = len(vehicle.contacts), len(vehicle.dof_names)
-    found = Responses(*(np.empty((omega.size, outputs, cases), complex) for outputs in (contacts, contacts, dofs)))
-    step = chunk_for(contacts)
-    with unthreaded(contacts):
-        for first in range(0, omega.size, step):
-            some = slice(first, first + step)
-            _, frf, stiffness = system.sample(omega[some])
-            found.force[some] = solve_contacts(frf, stiffness, roughness[some])
-            found.deflection[some] = product(frf, found.force[some])
-            displacement = found.deflection[some] - roughness[some]
-            for case in range(cases):
-                found.motion[some, :, case] = system.motion(omega[some], displacement[:, :, case])
-    singular = ~np.isfinite(sum(np.abs(part).sum(axis=(1, 2)) for part in found))
-    if singular.any():
-        raise SolveError(
-            f"vehicle and guideway have no finite response at {omega[singular][0].real / (2 * np.pi):.6g} Hz and "
-            f"{system.speed:g} m/s: a vibration without damping is driven at its own frequency"
-        )
-    return found
 
 
 def coordinates(vehicle: Vehicle, frequency: FloatArray) -> dict[str, ArrayLike]:

@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
+from movingfrf.response.batches import product, solve_contacts
 from movingfrf.response.line import SpectralGrid
-from movingfrf.response.solve import Sample, System, product, solve_contacts
+from movingfrf.response.system import Sample, System
 
 # The change in any output that a rigid road beyond the truncation may make is 1e-6, relative L2. The spectra are
 # those of records under an exponential window; undoing it raises what was cut early against what comes late.

@@ -9,9 +9,9 @@ import numpy as np
 from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.welch import welch
-from movingfrf.response.line import SpectralGrid
-from movingfrf.response.simulation import BYTES_PER_SAMPLE, spectral_grid
-from movingfrf.response.solve import joined, steady_state
+from movingfrf.response.line import BYTES_PER_SAMPLE, SpectralGrid
+from movingfrf.response.simulation import spectral_grid
+from movingfrf.response.system import joined, steady_state
 from movingfrf.results.findings import near_critical
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road

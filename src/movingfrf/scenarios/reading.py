@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from movingfrf._basics.checks import Fault, ParameterError, nearest, shown
-from movingfrf.response.simulation import require_record, spectral_grid
+from movingfrf.response.line import require_record
+from movingfrf.response.simulation import spectral_grid
 from movingfrf.roughness.excitation import require_cover
 from movingfrf.scenarios.kinds import DEFAULT_KIND, KINDS, TABLE_LISTS, TABLES
 from movingfrf.scenarios.scenario import Scenario, ScenarioError

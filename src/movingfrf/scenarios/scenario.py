@@ -12,7 +12,8 @@ import numpy as np
 from movingfrf._basics.checks import Fault
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway
-from movingfrf.response.simulation import moving_loads, simulate
+from movingfrf.response.moving_loads import moving_loads
+from movingfrf.response.simulation import simulate
 from movingfrf.roughness.road import Road
 from movingfrf.scenarios.kinds import Loads
 from movingfrf.vehicles.journey import Journey

@@ -16,7 +16,8 @@ from movingfrf.guideways.beams import EulerBernoulliBeam
 from movingfrf.guideways.foundations import OnMass
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import Track
-from movingfrf.response.simulation import moving_loads, simulate
+from movingfrf.response.moving_loads import moving_loads
+from movingfrf.response.simulation import simulate
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.stepping.coupled import prepared

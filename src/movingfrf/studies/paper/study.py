@@ -22,7 +22,8 @@ from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import Track
 from movingfrf.response.line import SpectralGrid
-from movingfrf.response.simulation import moving_loads, simulate
+from movingfrf.response.moving_loads import moving_loads
+from movingfrf.response.simulation import simulate
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Scenario

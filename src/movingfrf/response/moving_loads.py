@@ -1,0 +1,141 @@
+"""Prescribed loads that travel along a guideway."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import movingfrf.results.findings as find
+from movingfrf._basics.checks import checking
+from movingfrf._basics.progress import Progress, silent
+from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.response.batches import CHUNK
+from movingfrf.response.line import SpectralGrid, require_record
+from movingfrf.results.labels import LOADED, labelled, provenance
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# Frequencies beyond a truncation at which the response to prescribed loads is looked at.
+SAMPLES_BEYOND = 256
+
+
+def moving_loads(
+    guideway: Guideway,
+    force: ArrayLike,
+    positions: ArrayLike,
+    *,
+    speed: float,
+    time_step: float = 1e-3,
+    observe: ArrayLike | None = None,
+    truncation: float | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Deflection of a road under prescribed forces that travel along it, from rest at t = 0.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    force : array_like, shape (time, load)
+        Forces [N], positive down. A force that is not zero at t = 0 is switched on at that instant.
+    positions : array_like, shape (load,)
+        Where the forces act, in the frame that travels with them [m], positive ahead.
+    speed : float
+        Common speed [m/s]; zero stands still, a negative one travels backwards.
+    time_step : float
+        Step in time [s].
+    observe : array_like, shape (point,), optional
+        Observation points in the same frame [m]; the loads' own by default.
+    truncation : float, optional
+        Frequency beyond which the response is left out [Hz], fading over the next 5 %; None leaves nothing out.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        `deflection` (time, point) [m] and `force` (time, load) [N].
+
+    Raises
+    ------
+    ValueError
+        If a value is impossible, shapes disagree, or memory does not hold the result.
+    SolveError
+        If a result is not finite.
+
+    Warns
+    -----
+    ValidityWarning
+        If the speed is near or above critical, the response has not decayed, or there is content beyond the
+        truncation.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> road = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9),
+    ...                 mf.Spring(stiffness=8.0e6, damping=3.0e4))
+    >>> result = mf.moving_loads(road, np.full((2000, 1), 1e5), [0.0], speed=10.0)
+    >>> round(1e3 * result.deflection[-1, 0].item(), 3)  # mm
+    3.737
+    """
+    require_guideway(guideway)
+    with checking() as check:
+        at = check.array("positions", positions, "m", (None,))
+        forces = check.array("force", force, "N", (None, at.size))
+        points = at if observe is None else check.array("observe", observe, "m", (None,))
+        check.finite("speed", speed, "m/s")
+        check.positive("time_step", time_step, "s")
+        if truncation is not None:
+            check.not_negative("truncation", truncation, "Hz")
+        if not check.faults and (len(forces) < 2 or not at.size or not points.size):
+            check.refuse("force", "must have at least two samples, one load and one observation point")
+    # What settles here is the guideway, in a time that is short beside that of any vehicle.
+    settling = len(forces) * time_step
+    require_record(settling, settling, time_step, at.size + points.size)
+    grid = SpectralGrid(samples=len(forces), time_step=time_step, truncation=truncation, settling=settling)
+    spectra = grid.to_spectra(forces)
+    deflection = np.empty((points.size, grid.kept), complex).T
+    for first in range(0, grid.kept, CHUNK):
+        last = min(first + CHUNK, grid.kept)
+        some = slice(first, last)
+        frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(some))
+        frf = frf * grid.compliance(some)[:, None, None]
+        deflection[first:last] = (frf @ spectra[first:last, :, None])[:, :, 0]
+        progress("moving FRF", last / grid.kept)
+    # Beyond the truncation every so-many-th frequency tells how much is left out.
+    stride = (grid.size - grid.untouched) // SAMPLES_BEYOND + 1
+    beyond = np.arange(grid.untouched, grid.size, stride)
+    frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(beyond))
+    left_out = stride * (np.abs((frf @ spectra[beyond][:, :, None])[:, :, 0]) ** 2).sum(axis=0)
+    whole = (np.abs(deflection) ** 2).sum(axis=0) + left_out
+    error = float(np.sqrt(np.divide(left_out, whole, out=np.zeros_like(whole), where=whole > 0).max()))
+    progress("histories", 0.0)
+    response = grid.to_histories(deflection)
+    critical_speed = float(guideway.critical_speed)
+    found = [
+        *find.near_critical(abs(speed), critical_speed),
+        *find.not_decayed("deflection", response.wrapped, response.values),
+        *find.beyond_truncation(truncation or 0.0, error),
+    ]
+    values = {
+        "time": grid.time,
+        "load": at,
+        "point": points,
+        "force": forces,
+        "deflection": response.values,
+    }
+    attributes = {
+        **provenance("Response of a guideway to prescribed moving loads"),
+        "speed": float(speed),
+        "time_step": float(time_step),
+        "truncation": 0.5 / time_step if truncation is None else float(truncation),
+        "truncation_error": error,
+        "critical_speed": critical_speed,
+        "guideway": repr(guideway),
+        "findings": find.announced(found),
+    }
+    return labelled(values, LOADED, attributes)
