@@ -26,7 +26,7 @@ import numpy as np
 import scipy.fft
 
 import movingfrf as mf
-from movingfrf.reports.page import Table
+from movingfrf.reports.tables import Table
 from movingfrf.results.labels import COUPLED, labelled
 from movingfrf.roughness.excitation import excite
 from movingfrf.scenarios.reading import parse_scenario

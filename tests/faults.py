@@ -852,12 +852,10 @@ FAULTS = [
         'statistics["acceleration_rms"] > 0, _',
         'statistics["acceleration_rms"] >= 0, _',
     ),
-    Fault("curve that hides another", "reports/plots.py", "<= COINCIDENT * np.abs(other)", "<= np.abs(other)"),
-    Fault("roll for a bounce", "reports/plots.py", "units[dof] != units[one] or abs(size", "abs(size"),
-    Fault("wheels before bodies", "reports/plots.py", "key=lambda dof: rms[dof])", "key=lambda dof: -rms[dof])"),
-    Fault(
-        "moving FRF up to a truncation", "reports/illustrations.py", "return min(max(ends), kept)", "return kept"
-    ),
+    Fault("curve that hides another", "reports/curves.py", "<= COINCIDENT * np.abs(other)", "<= np.abs(other)"),
+    Fault("roll for a bounce", "reports/curves.py", "units[dof] != units[one] or abs(size", "abs(size"),
+    Fault("wheels before bodies", "reports/curves.py", "key=lambda dof: rms[dof])", "key=lambda dof: -rms[dof])"),
+    Fault("moving FRF up to a truncation", "reports/frf.py", "return min(max(ends), kept)", "return kept"),
     Fault("table wider than the console", "commands/main.py", "if pieces[-1] and width > left:", "if False:"),
     Fault("once in 1e46 seconds", "_basics/wording.py", "0 < value < NEVER", "0 < value < 0"),
     Fault("file without accelerations", "results/files.py", "if not label.optional]", "if label.optional]"),

@@ -107,9 +107,9 @@ def test_an_earlier_result_and_other_files_survive_a_failed_run(scenario, tmp_pa
     def fails(*_args, **_kwargs):
         raise OSError(28, "No space left on device")
 
-    import movingfrf.reports.coupled
+    import movingfrf.reports.result
 
-    monkeypatch.setattr(movingfrf.reports.coupled, "render", fails)
+    monkeypatch.setattr(movingfrf.reports.result, "render", fails)
     scenario.write_text(edited(duration=3.0))
     assert main(["run", str(scenario), "--output", str(output)]) == 2
     assert {file.name: file.read_bytes() for file in output.iterdir()} == before

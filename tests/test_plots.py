@@ -10,6 +10,9 @@ import movingfrf as mf
 from movingfrf._basics import wording
 from movingfrf._basics.welch import spectral_density
 from movingfrf.reports import plots
+from movingfrf.reports.axes import decimated
+from movingfrf.reports.curves import PALETTE, Curve, _curves, distinct, telling
+from movingfrf.reports.frf import FRF_RANGE, frf_amplitude, frf_phase
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +42,7 @@ def test_decimation_keeps_every_extreme(logarithmic):
     y = rng.standard_normal(x.size)
     spikes = rng.choice(x.size, 40, replace=False)
     y[spikes] = 100.0 * rng.choice([-1, 1], 40) + np.arange(40)
-    thin_x, thin_y = plots.decimated(x, y, buckets=10_000, logarithmic=logarithmic)
+    thin_x, thin_y = decimated(x, y, buckets=10_000, logarithmic=logarithmic)
     assert thin_x.size <= 20_002
     assert (thin_x[0], thin_x[-1]) == (x[0], x[-1])
     assert np.all(np.diff(thin_x) > 0)
@@ -53,7 +56,7 @@ def test_decimation_keeps_every_extreme(logarithmic):
 
 def test_decimation_leaves_short_series_alone():
     x = np.arange(10.0)
-    assert plots.decimated(x, x, buckets=4)[0].size == 10
+    assert decimated(x, x, buckets=4)[0].size == 10
 
 
 def test_forces_are_static_plus_dynamic_in_kilonewton(result):
@@ -97,10 +100,10 @@ def test_a_constant_looks_constant(result):
 def test_frf_in_micrometres_per_kilonewton_and_unwrapped_degrees():
     frequency = np.linspace(0.0, 10.0, 101)
     frf = 2e-9 * np.exp(-1j * 2 * np.pi * frequency * 0.3)[:, None]
-    amplitude = plots.frf_amplitude(frequency, frf, [0.0], axes(), truncation=5.0)
+    amplitude = frf_amplitude(frequency, frf, [0.0], axes(), truncation=5.0)
     np.testing.assert_allclose(amplitude.lines[0].get_ydata(), 2.0)
     assert "truncation, 5 Hz" in amplitude.get_legend_handles_labels()[1]
-    phase = plots.frf_phase(frequency, frf, [0.0], axes())
+    phase = frf_phase(frequency, frf, [0.0], axes())
     np.testing.assert_allclose(phase.lines[0].get_ydata(), -360 * 0.3 * frequency, atol=1e-9)
 
 
@@ -110,7 +113,7 @@ def test_a_contact_keeps_its_colour(result):
         plots.deflections(result, axes()).lines[0],
         plots.contact_force_spectra(result, axes()).lines[0],
     ]
-    assert {line.get_color() for line in both} == {plots.PALETTE[0]}
+    assert {line.get_color() for line in both} == {PALETTE[0]}
 
 
 def test_many_curves_are_thinned_to_the_first_the_last_and_some_between():
@@ -142,13 +145,13 @@ def test_every_axis_names_quantity_and_unit(result, draw):
 
 def test_curves_that_coincide_are_merged():
     values = np.array([[1.0, 1.0, 2.0, 1.0, 2.0], [3.0, 3.0 + 1e-7, 4.0, 3.0, 4.0 + 1e-4]])
-    curves = [plots.Curve(n, f"c{n}", plots.PALETTE[n]) for n in range(5)]
-    assert plots.distinct(curves, values) == [
-        plots.Curve(0, "c0 = 2 others", plots.PALETTE[0]),
-        plots.Curve(2, "c2", plots.PALETTE[2]),
-        plots.Curve(4, "c4", plots.PALETTE[4]),
+    curves = [Curve(n, f"c{n}", PALETTE[n]) for n in range(5)]
+    assert distinct(curves, values) == [
+        Curve(0, "c0 = 2 others", PALETTE[0]),
+        Curve(2, "c2", PALETTE[2]),
+        Curve(4, "c4", PALETTE[4]),
     ]
-    assert [curve.name for curve in plots.distinct(curves[:3], values)] == ["c0 = c1", "c2"]
+    assert [curve.name for curve in distinct(curves[:3], values)] == ["c0 = c1", "c2"]
 
 
 def test_of_many_degrees_of_freedom_the_calm_ones_that_differ_are_drawn():
@@ -156,20 +159,20 @@ def test_of_many_degrees_of_freedom_the_calm_ones_that_differ_are_drawn():
     one = np.array([0.1, 0.1, 1.3, 13.0, 13.5])
     rms = np.concatenate([one * (1 + 0.01 * coach) for coach in range(4)])
     units = ["m", "rad", "m", "m", "m"] * 4
-    assert plots.telling(rms, units, most=8) == [0, 1, 2, 3]
-    assert plots.telling(rms, units, most=3) == [0, 1, 2]
-    assert plots.telling(rms, units, most=20) == list(range(20))
+    assert telling(rms, units, most=8) == [0, 1, 2, 3]
+    assert telling(rms, units, most=3) == [0, 1, 2]
+    assert telling(rms, units, most=20) == list(range(20))
 
 
 def test_chosen_contacts_have_colours_of_their_own(result):
-    curves = plots._curves([f"c{n}" for n in range(16)], [6, 7, 8])
+    curves = _curves([f"c{n}" for n in range(16)], [6, 7, 8])
     assert len({curve.colour for curve in curves}) == 3
-    usual = {curve.column: curve.colour for curve in plots._curves([f"c{n}" for n in range(16)], None)}
+    usual = {curve.column: curve.colour for curve in _curves([f"c{n}" for n in range(16)], None)}
     assert curves[0].colour == usual[6]
 
 
 def test_a_phase_is_drawn_where_the_amplitude_is():
     frequency = np.linspace(0.0, 10.0, 101)
     frf = np.exp(-2.0 * frequency)[:, None] * np.exp(-1j * frequency[:, None])
-    phase = plots.frf_phase(frequency, frf, [0.0], axes()).lines[0].get_ydata()
-    assert np.isfinite(phase).tolist() == (np.exp(-2.0 * frequency) >= plots.FRF_RANGE).tolist()
+    phase = frf_phase(frequency, frf, [0.0], axes()).lines[0].get_ydata()
+    assert np.isfinite(phase).tolist() == (np.exp(-2.0 * frequency) >= FRF_RANGE).tolist()

@@ -11,8 +11,9 @@ import pytest
 import movingfrf as mf
 from movingfrf._basics.wording import number
 from movingfrf.metrics.measures import measures
-from movingfrf.reports import illustrations
-from movingfrf.reports.coupled import render
+from movingfrf.reports.coupled import _contact_offsets, _neighbours, of_coupled
+from movingfrf.reports.frf import _frf_end
+from movingfrf.reports.result import render
 
 ROAD = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9), mf.Spring(stiffness=8e6, damping=3e4))
 CAR = mf.quarter_car(
@@ -118,10 +119,10 @@ def test_tables_are_narrow_and_their_columns_have_one_unit(page):
 
 def test_nearby_offsets_and_neighbours(three):
     """Wheels at 2, 0.5 and −2.5 m: 1.5 m, and 3 m as the least that is twice as long."""
-    assert illustrations._contact_offsets(three) == [0.0, 1.5, -1.5, 3.0, -3.0]
-    assert illustrations._neighbours(three, 0) == [0, 1]
-    assert illustrations._neighbours(three, 2) == [1, 2]
-    assert illustrations._contact_offsets(drive(duration=0.1)) == [0.0]
+    assert _contact_offsets(three) == [0.0, 1.5, -1.5, 3.0, -3.0]
+    assert _neighbours(three, 0) == [0, 1]
+    assert _neighbours(three, 2) == [1, 2]
+    assert _contact_offsets(drive(duration=0.1)) == [0.0]
 
 
 def test_the_moving_frf_is_drawn_as_far_as_the_road_moves():
@@ -134,10 +135,10 @@ def test_the_moving_frf_is_drawn_as_far_as_the_road_moves():
     result = drive(duration=2.0).assign_attrs(truncation=400.0)
     time = result.time.values
     result.deflection[:] = np.sin(2 * np.pi * 50.0 * time)[:, None]
-    assert illustrations._frf_end(result, frf) == pytest.approx(1.3 * 50.0, rel=0.1)
-    assert illustrations._frf_end(result.assign_attrs(truncation=35.0), frf) == pytest.approx(1.3 * 35.0)
+    assert _frf_end(result, frf) == pytest.approx(1.3 * 50.0, rel=0.1)
+    assert _frf_end(result.assign_attrs(truncation=35.0), frf) == pytest.approx(1.3 * 35.0)
     result.deflection[:] = 1e-3
-    assert illustrations._frf_end(result, frf) == frequency[-1]
+    assert _frf_end(result, frf) == frequency[-1]
 
 
 def test_text_is_escaped(page):
@@ -181,11 +182,11 @@ def on_track(spectrum, step):
 def test_roughness_is_fitted_where_it_has_content():
     """Track whose waves end at 3 m, which a fit to 2.83 cycle/m takes for a waviness beyond 10."""
     result = on_track(mf.GermanTrack.of_class("low"), 0.05)
-    figures = illustrations.of_coupled(result, mf.RigidGuideway())
+    figures = of_coupled(result, mf.RigidGuideway())
     fitted = re.search(r"dashed, over 0.0\d+ to (0.\d+) cycle/m\)", figures[0].caption)
     assert 0.2 < float(fitted[1]) < 0.34
     assert figures[0].heading == "Roughness"
-    known = illustrations.of_coupled(result.assign_attrs(spectrum="German track"), mf.RigidGuideway())
+    known = of_coupled(result.assign_attrs(spectrum="German track"), mf.RigidGuideway())
     assert "It was made from a spectrum, so none is fitted: German track." in known[0].caption
     assert "class A" not in known[0].caption
 

@@ -7,6 +7,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from movingfrf.reports import plots
+from movingfrf.reports.axes import legend_above
 from movingfrf.scenarios.reading import parse_scenario
 
 
@@ -18,7 +19,7 @@ def main() -> None:
     FigureCanvasAgg(figure)
     above, below = figure.subplots(2, 1, sharex=True)
     plots.contact_forces(result, above, interval=(12.0, 17.0))
-    plots.legend_above(above)
+    legend_above(above)
     above.set_xlabel("")
     plots.deflections(result, below, interval=(12.0, 17.0))
     for axes in (above, below):

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
-    from movingfrf.reports.page import Table as TableForReading
+    from movingfrf.reports.tables import Table as TableForReading
     from movingfrf.results.labels import Measure
     from movingfrf.roughness.files import ReadProfile
 
@@ -196,7 +196,7 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
         import xarray  # noqa: F401
 
         from movingfrf.metrics.measures import measures
-        from movingfrf.reports.coupled import render
+        from movingfrf.reports.result import render
         from movingfrf.results.files import replacing, save, summary
         from movingfrf.scenarios.reading import read_scenario
 

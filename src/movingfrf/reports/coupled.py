@@ -1,19 +1,22 @@
-"""One HTML page about a result: settings, findings, measures and figures, with nothing outside the page."""
+"""What a report says about a vehicle on a road."""
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from movingfrf._basics import wording
+from movingfrf._basics.welch import FLAT
 from movingfrf._basics.wording import number, plain
 from movingfrf.guideways.guideway import Guideway
-from movingfrf.metrics.measures import measures
-from movingfrf.reports import illustrations, plots
-from movingfrf.reports.page import Column, Row, Setting, Table, measure_tables, page
-from movingfrf.results.labels import duration_of, speed_in_words, time_step_of
+from movingfrf.reports import plots
+from movingfrf.reports.axes import legend_above
+from movingfrf.reports.curves import contact_curves, distinct, foremost, readable, telling
+from movingfrf.reports.figures import PANEL, SINGLE, STACKED, Illustration, blank, illustrated, panels
+from movingfrf.reports.frf import frf_figures
+from movingfrf.results.labels import duration_of, speed_in_words
+from movingfrf.roughness.fitting import fit_iso
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,48 +32,20 @@ CAPTIONS = {
     "ISO 2631-1.",
 }
 
+# Window around the largest dynamic force [s].
+ZOOM = 1.5
 
-def render(result: xr.Dataset, *, guideway: Guideway, scenario_text: str = "", title: str = "") -> str:
-    """Write the report of a result.
+# Degrees of freedom with panels of their own, and contacts in one figure around the peak.
+MOST_DOFS, MOST_NEIGHBOURS = 8, 2
 
-    Parameters
-    ----------
-    result : xarray.Dataset
-        What `simulate` or `moving_loads` returned.
-    guideway : Guideway
-        The guideway that it was computed for; its moving FRFs are drawn.
-    scenario_text : str
-        Text of the scenario file, shown as it is; by default what the result carries, if anything.
-    title : str
-        Title of the page; by default what the result calls itself.
-
-    Returns
-    -------
-    str
-        One HTML page without references to anything outside it. Equal input gives equal text.
-    """
-    coupled = "contact_force" in result
-    with illustrations.drawing():
-        figures = (
-            illustrations.of_coupled(result, guideway) if coupled else illustrations.of_loads(result, guideway)
-        )
-    return page(
-        title=title or result.attrs.get("title", "Response of a guideway"),
-        version=result.attrs.get("movingfrf", "of unknown version"),
-        summary=_coupled_summary(result) if coupled else _loaded_summary(result),
-        settings=_settings(result),
-        findings=_findings(result),
-        no_findings=_no_findings(coupled),
-        tables=measure_tables(result, measures(result), CAPTIONS) if coupled else _loaded_tables(result),
-        figures=figures,
-        method=_coupled_method() if coupled else _loaded_method(),
-        scenario=scenario_text or result.attrs.get("scenario", ""),
-    )
+# Which degrees of freedom are left out where there are many.
+MOVES_ALIKE = " Left out are those with an rms within a tenth of one that is drawn, then the liveliest."
 
 
-def _coupled_summary(result: xr.Dataset) -> str:
+def coupled_summary(result: xr.Dataset) -> str:
+    """Say in a sentence what was computed."""
     contacts, dofs = result.sizes["contact"], result.sizes["dof"]
-    road = "rough road" if illustrations.is_rough(result) else "smooth road"
+    road = "rough road" if is_rough(result) else "smooth road"
     weight = number(1e-3 * float(result.static_load.values.sum()))
     return (
         f"A vehicle of {weight} kN with {wording.count(contacts, 'contact')} and "
@@ -81,87 +56,8 @@ def _coupled_summary(result: xr.Dataset) -> str:
     )
 
 
-def _loaded_summary(result: xr.Dataset) -> str:
-    return (
-        f"{wording.count(result.sizes['load'], 'prescribed force')} on a road, travelling at "
-        f"{speed_in_words(result)} for {plain(duration_of(result))} s from rest at t = 0; the deflection at "
-        f"{wording.count(result.sizes['point'], 'point')} travelling along was computed in the frequency domain "
-        "with moving frequency response functions (moving FRFs)."
-    )
-
-
-def _settings(result: xr.Dataset) -> list[Setting]:
-    attrs, duration, step = result.attrs, duration_of(result), time_step_of(result)
-    critical = attrs.get("critical_speed", float("inf"))
-    speed = attrs["speed"]
-    found = [
-        Setting("Speed", f"{plain(speed)} m/s", f"{plain(round(3.6 * speed, 6))} km/h"),
-        Setting("Duration", f"{plain(duration)} s"),
-        Setting("Distance", f"{plain(float(f'{duration * abs(speed):.12g}'))} m"),
-        Setting("Time step", f"{plain(1e3 * step)} ms", f"{result.sizes['time']} samples"),
-        *_truncation_settings(result),
-        Setting(
-            "Critical speed of the road",
-            f"{number(critical)} m/s" if np.isfinite(critical) else "none",
-            f"{number(3.6 * critical)} km/h; this speed is {number(100 * abs(speed) / critical, 3)} % of it"
-            if np.isfinite(critical)
-            else "",
-        ),
-    ]
-    if "start" in attrs:
-        found.append(Setting("Start", f"{plain(attrs['start'])} m", "of the vehicle's reference point, at t = 0"))
-    if "blend" in attrs:
-        found.append(Setting("Blend", f"{plain(attrs['blend'])} m", "over which the profile sets in"))
-    if "datum" in attrs:
-        found.append(Setting("Datum", f"{number(attrs['datum'])} m", "subtracted from the profile's elevations"))
-    if "road" in attrs:
-        found.append(Setting("Roughness", attrs["road"], wide=True))
-    if "guideway" in attrs:
-        found.append(Setting("Road (SI units)", attrs["guideway"], wide=True))
-    return found
-
-
-def _truncation_settings(result: xr.Dataset) -> list[Setting]:
-    if "truncation" not in result.attrs:
-        return []
-    truncation, coupled = result.attrs["truncation"], "contact_force" in result
-    if not coupled:
-        if truncation >= 0.5 / time_step_of(result):
-            return [Setting("Truncation", "none", "every frequency of the record is kept")]
-        return [Setting("Truncation", f"{plain(truncation)} Hz", "the response beyond it is left out")]
-    error = result.attrs.get("truncation_error")
-    return [
-        Setting("Truncation", f"{truncation:.4g} Hz", "beyond it the road counts as rigid"),
-        *(
-            [
-                Setting(
-                    "Estimated truncation error",
-                    number(error, 2),
-                    "largest change of an output by the truncation, over the output's rms",
-                )
-            ]
-            if error is not None
-            else []
-        ),
-    ]
-
-
-def _findings(result: xr.Dataset) -> list[str]:
-    """Messages as sentences."""
-    messages = [finding["message"] for finding in json.loads(result.attrs.get("findings", "[]"))]
-    return [f"{message[:1].upper()}{message[1:].rstrip('.')}." for message in messages]
-
-
-def _no_findings(coupled: bool) -> str:
-    if coupled:
-        return (
-            "No findings: contact is kept throughout, the speed is well below critical, the response dies away "
-            "within the padded record, and truncation and time step leave nothing of weight out."
-        )
-    return "No findings: the speed is well below critical and the response dies away within the padded record."
-
-
-def _coupled_method() -> list[str]:
+def coupled_method() -> list[str]:
+    """Say how it was computed, and what is assumed."""
     return [
         "Vehicle and road are linear, and the speed is constant.",
         "The road is infinitely long and the same everywhere along its length; only its surface is rough.",
@@ -177,57 +73,177 @@ def _coupled_method() -> list[str]:
     ]
 
 
-def _loaded_method() -> list[str]:
+def of_coupled(result: xr.Dataset, guideway: Guideway) -> list[Illustration]:
+    """Illustrate the response of a vehicle and a guideway."""
     return [
-        "The road is linear, infinitely long and the same everywhere along its length; the speed is constant.",
-        "The forces are given and do not depend on what the road does. Before t = 0 the road is at rest; a force "
-        "that is not zero at t = 0 is switched on at that instant.",
-        "At every frequency the deflections are W = G F, with G the moving FRFs between loads and points.",
-        "Forces and deflections are positive downward; positions are positive ahead. Spectra are one-sided, "
-        "estimated by Welch's method (Hann window, half overlap).",
+        _road_figure(result),
+        *frf_figures(result, guideway, _contact_offsets(result)),
+        _forces_figure(result),
+        *_zoom_figures(result),
+        _force_spectra_figure(result),
+        _deflections_figure(result),
+        _accelerations_figure(result),
     ]
 
 
-# Tables
+def is_rough(result: xr.Dataset) -> bool:
+    """Tell whether the road has any roughness to draw."""
+    return bool(np.ptp(result.roughness.values, axis=0).max() >= FLAT)
 
 
-def _loaded_tables(result: xr.Dataset) -> list[Table]:
-    return [_load_table(result), _point_table(result)]
+def _road_figure(result: xr.Dataset) -> Illustration:
+    figure = blank(STACKED + SINGLE + 0.9)
+    above, below = figure.subplots(2, 1, height_ratios=(STACKED, SINGLE))
+    legend_above(plots.roughness(result, above))
+    legend_above(plots.roughness_spectrum(result, below))
+    caption = (
+        "What the foremost contact of each path rolls over: elevation over distance, and its spectrum among the "
+        "centre lines of the ISO 8608 classes A (smooth) to H (rough). " + _class_words(result)
+    )
+    return illustrated("road", "Roughness", caption, figure)
 
 
-def _load_table(result: xr.Dataset) -> Table:
-    drawn = {curve.column: curve.colour for curve in plots.load_curves(result)}
-    rows = []
-    for curve in plots.load_curves(result, range(result.sizes["load"])):
-        force = 1e-3 * result.force.values[:, curve.column]
-        cells = [number(float(value)) for value in (force.mean(), force.std(), force.min(), force.max())]
-        rows.append(Row(curve.name, cells, drawn.get(curve.column, "")))
-    names = ("mean", "rms about the mean", "smallest", "largest")
-    return Table("Prescribed forces, down.", "load", [Column(name, "kN") for name in names], rows)
+def _class_words(result: xr.Dataset) -> str:
+    """Say which spectrum the road was made from, or what the fit found, path by path."""
+    if "spectrum" in result.attrs:
+        return f"It was made from a spectrum, so none is fitted: {result.attrs['spectrum']}."
+    said = []
+    for contact in foremost(result):
+        fit = fit_iso(*plots.road_spectrum(result, contact))
+        if fit.reason:
+            said.append(f"Under contact {contact} no class is fitted: {fit.reason}.")
+            continue
+        said.append(
+            f"The fit under contact {contact} (dashed, over {fit.covered}) gives "
+            f"{number(fit.roughness, 3)} m³ at 0.1 cycle/m with waviness "
+            f"{number(fit.waviness, 3)}; with the waviness 2 of the standard "
+            f"{number(fit.roughness_at_two, 3)} m³, class {fit.road_class}"
+            + (f" ({fit.doubt})." if fit.doubt else ".")
+        )
+    return f"{' '.join(said)} A class describes random roughness; a single bump or joint has none."
 
 
-def _point_table(result: xr.Dataset) -> Table:
-    drawn = {curve.column: curve.colour for curve in plots.point_curves(result)}
-    time = result.time.values
-    rows = []
-    for curve in plots.point_curves(result, range(result.sizes["point"])):
-        deflection = 1e3 * result.deflection.values[:, curve.column]
-        largest, smallest = deflection.argmax(), deflection.argmin()
-        cells = [
-            number(float(deflection[largest])),
-            f"{time[largest]:.6g}",
-            number(float(deflection[smallest])),
-            f"{time[smallest]:.6g}",
-            number(float(np.sqrt(np.mean(deflection**2)))),
-            number(float(deflection[-1])),
-        ]
-        rows.append(Row(curve.name, cells, drawn.get(curve.column, "")))
-    columns = [
-        Column("largest", "mm"),
-        Column("at time", "s"),
-        Column("smallest", "mm"),
-        Column("at time", "s"),
-        Column("rms", "mm"),
-        Column("at the end", "mm"),
-    ]
-    return Table("Deflections of the road, down.", "observation point", columns, rows)
+def _contact_offsets(result: xr.Dataset) -> list[float]:
+    """Zero, and two distances between contacts, ahead and behind [m]: the least, and the next twice as long."""
+    positions = result.position.values
+    distances = np.unique(np.round(np.abs(positions[:, None] - positions), 6))
+    distances = distances[distances > 0]
+    chosen = [*distances[:1].tolist(), *distances[distances >= 2 * distances.min(initial=np.inf)][:1].tolist()]
+    return [0.0, *(offset for distance in chosen for offset in (distance, -distance))]
+
+
+def _forces_figure(result: xr.Dataset) -> Illustration:
+    curves = distinct(contact_curves(result), result.contact_force.values)
+    figure = panels(
+        len(curves),
+        lambda n, ax: plots.contact_forces(result, ax, contacts=[curves[n].column]).set_ylabel("force [kN]"),
+        [curve.colour for curve in curves],
+        [curve.name for curve in curves],
+    )
+    peak, instant, contact = _peak_force(result)
+    words = "Total contact forces; dashed, the static level about which they vary. "
+    words += (
+        f"The largest dynamic force, {number(1e-3 * peak)} kN, acts under contact {contact} at {instant:.6g} s. "
+        "Contact is lost where a force falls below zero."
+        if peak
+        else "The road is smooth, so the forces stay at their static level."
+    )
+    words += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
+    return illustrated("forces", "Contact forces", words, figure)
+
+
+def _peak_force(result: xr.Dataset) -> tuple[float, float, int]:
+    """Largest magnitude of the dynamic force [N], its time [s] and contact."""
+    places = [np.abs(column).argmax() for column in result.contact_force.values.T]
+    peaks = [abs(column[p]) for column, p in zip(result.contact_force.values.T, places, strict=True)]
+    contact = int(np.argmax(peaks))
+    return float(peaks[contact]), float(result.time.values[places[contact]]), contact
+
+
+def _zoom_figures(result: xr.Dataset) -> list[Illustration]:
+    """Draw the forces around the largest one, where the record is long enough for that to add anything."""
+    duration = duration_of(result)
+    peak, instant, contact = _peak_force(result)
+    if duration <= 2 * ZOOM or not peak:
+        return []
+    first = min(max(instant - ZOOM / 2, 0.0), duration - ZOOM)
+    chosen = _neighbours(result, contact)
+    figure = blank(SINGLE)
+    (ax,) = figure.subplots(1, 1, squeeze=False)[0]
+    plots.contact_forces(result, ax, contacts=chosen, interval=(first, first + ZOOM))
+    for line in ax.lines:
+        line.set_linewidth(1.5)
+    legend_above(ax)
+    caption = (
+        f"The {ZOOM:g} s around the largest dynamic force ({number(1e-3 * peak)} kN under contact {contact}), "
+        "there and under the nearest contact of the same path. They meet the same spot one after the other: look "
+        "for the same event with its delay. "
+        "Dashed: the static levels."
+    )
+    return [illustrated("zoom", "Contact forces around the peak", caption, figure)]
+
+
+def _neighbours(result: xr.Dataset, contact: int) -> list[int]:
+    """Name a contact and the one nearest to it in its path."""
+    position, path = result.position.values, result.path.values
+    same = np.flatnonzero(path == path[contact])
+    nearest = same[np.argsort(np.abs(position[same] - position[contact]), kind="stable")]
+    return sorted(nearest[:MOST_NEIGHBOURS].tolist())
+
+
+def _force_spectra_figure(result: xr.Dataset) -> Illustration:
+    figure = blank(SINGLE + 0.3)
+    (ax,) = figure.subplots(1, 1, squeeze=False)[0]
+    legend_above(plots.contact_force_spectra(result, ax))
+    caption = (
+        "Amplitude spectral densities of the dynamic contact forces (one-sided; their squares integrate to the "
+        "variance). The lowest humps are, as a rule, the body on its suspension, higher ones the wheels on their "
+        "tyres. The frequency axis covers 99.99 % of the variance."
+    )
+    caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
+    return illustrated("force-spectra", "Contact-force spectra", caption, figure)
+
+
+def _deflections_figure(result: xr.Dataset) -> Illustration:
+    curves = distinct(contact_curves(result), result.deflection.values)
+    figure = panels(
+        len(curves),
+        lambda n, ax: plots.deflections(result, ax, places=[curves[n].column]).set_ylabel("deflection [mm]"),
+        [curve.colour for curve in curves],
+        [curve.name for curve in curves],
+    )
+    deflection = result.deflection.values
+    contact = int(np.argmax([column.max() for column in deflection.T]))
+    place = int(deflection[:, contact].argmax())
+    caption = (
+        "Deflection of the road under each contact, positive down; dashed, the sag in steady travel on the smooth "
+        f"road. The largest, {number(1e3 * float(deflection[place, contact]))} mm, occurs under contact {contact} "
+        f"at {result.time.values[place]:.6g} s."
+    )
+    caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
+    return illustrated("deflections", "Deflections under the contacts", caption, figure)
+
+
+def _accelerations_figure(result: xr.Dataset) -> Illustration:
+    total = result.sizes["dof"]
+    rms = np.sqrt(np.mean(result.acceleration.values**2, axis=0))
+    dofs = telling(rms, result.dof_unit.values.tolist(), MOST_DOFS)
+    figure = blank((PANEL + 0.15) * max(len(dofs), 2) + 0.4)
+    axes = figure.subplots(len(dofs), 2, sharex="col", squeeze=False, width_ratios=(3, 2))
+    for row, dof in zip(axes, dofs, strict=True):
+        plots.accelerations(result, dof, row[0])
+        plots.acceleration_spectrum(result, dof, row[1])
+        row[0].set_title(readable(str(result.dof.values[dof])), fontweight="bold")
+        row[1].set_title("power spectral density")
+        unit = result.dof_unit.values[dof]
+        row[0].set_ylabel(f"[{unit}/s²]")
+        row[1].set_ylabel(f"[({unit}/s²)²/Hz]")
+    for ax in axes[:-1].flat:
+        ax.set_xlabel("")
+    caption = (
+        "Acceleration of each degree of freedom over time, and its one-sided power spectral density. Each panel "
+        "has its own scale: compare numbers, not heights. Look for the frequencies at which a degree "
+        "of freedom moves most."
+    )
+    caption += wording.some_of(total, len(dofs), "degrees of freedom") + (MOVES_ALIKE if len(dofs) < total else "")
+    return illustrated("accelerations", "Accelerations of the vehicle", caption, figure)

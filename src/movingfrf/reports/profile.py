@@ -10,9 +10,11 @@ from movingfrf._basics import wording
 from movingfrf._basics.version import VERSION
 from movingfrf._basics.wording import number, plain
 from movingfrf.metrics.profile import PathDescription, ProfileDescription
-from movingfrf.reports import plots
-from movingfrf.reports.illustrations import SINGLE, Illustration, blank, drawing, illustrated
-from movingfrf.reports.page import Column, Row, Setting, Table, rendered
+from movingfrf.reports.axes import PALE, decimated, draw_classes, draw_fit, legend_above
+from movingfrf.reports.curves import PALETTE
+from movingfrf.reports.figures import SINGLE, Illustration, blank, drawing, illustrated
+from movingfrf.reports.page import rendered
+from movingfrf.reports.tables import Column, Row, Setting, Table
 from movingfrf.roughness.spectra.iso import IsoRoad
 
 if TYPE_CHECKING:
@@ -166,7 +168,7 @@ def _name(path: PathDescription) -> str:
 
 
 def _colours(found: ProfileDescription) -> list[str]:
-    return [plots.PALETTE[n % len(plots.PALETTE)] for n in range(len(found.paths))]
+    return [PALETTE[n % len(PALETTE)] for n in range(len(found.paths))]
 
 
 def _or_dash(value: float) -> str:
@@ -191,13 +193,13 @@ def _elevations(found: ProfileDescription) -> Illustration:
     ax = figure.subplots()
     columns = found.profile.columns
     for path, colour in zip(found.paths, _colours(found), strict=True):
-        distance, elevation = plots.decimated(found.profile.stations, columns[:, path.number])
+        distance, elevation = decimated(found.profile.stations, columns[:, path.number])
         ax.plot(distance, elevation, color=colour, label=f"path {_name(path)}")
     ax.margins(x=0)
     ax.ticklabel_format(axis="y", useOffset=False)
     ax.set_xlabel("distance [m]")
     ax.set_ylabel("elevation, up [m]")
-    plots.legend_above(ax)
+    legend_above(ax)
     return illustrated("elevation", "Elevation", "Elevation over distance along the road.", figure)
 
 
@@ -212,16 +214,16 @@ def _spectra(found: ProfileDescription) -> Illustration:
         inside = (n >= ends[0]) & (n <= ends[1]) & (density > 0)
         if not inside.any():
             continue
-        n, density = plots.decimated(n[inside], density[inside], buckets=400, logarithmic=True)
-        ax.plot(n, density, color=colour, alpha=plots.PALE, label=f"path {_name(path)}")
-        plots.draw_fit(path.fit, colour, ax)
+        n, density = decimated(n[inside], density[inside], buckets=400, logarithmic=True)
+        ax.plot(n, density, color=colour, alpha=PALE, label=f"path {_name(path)}")
+        draw_fit(path.fit, colour, ax)
         low, high = min(low, float(density.min())), max(high, float(density.max()))
     ax.set(xscale="log", yscale="log", xlim=DRAWN, ylim=(max(low, 1e-12 * high) / 3, 3 * high))
     ax.minorticks_off()
-    plots.draw_classes(ax, np.array([0.01, 10.0]))
+    draw_classes(ax, np.array([0.01, 10.0]))
     ax.set_xlabel("spatial frequency [cycle/m]")
     ax.set_ylabel("spectral density $G_d$ [m³]")
-    plots.legend_above(ax)
+    legend_above(ax)
     caption = (
         "Spectrum of the elevation among the centre lines of the ISO 8608 classes A (smooth) to H (rough); dashed, "
         "the fit of each path over the range that was fitted. A floor at high frequencies is, as a rule, the "
@@ -240,7 +242,7 @@ def _index(found: ProfileDescription) -> Illustration:
     ax.set_ylim(bottom=0.0)
     ax.set_xlabel("distance [m]")
     ax.set_ylabel("IRI [mm/m]")
-    plots.legend_above(ax)
+    legend_above(ax)
     caption = "International roughness index of segments: thin, the short ones; thick, the long ones."
     return illustrated("iri", "International roughness index", caption, figure)
 
@@ -248,7 +250,7 @@ def _index(found: ProfileDescription) -> Illustration:
 def _stairs(ax: Axes, start: float, span: float, each: np.ndarray, colour: str, label: str, rank: int) -> None:
     """Draw segments as stairs, thinned out where there are many."""
     edges = start + span * np.arange(each.size + 1)
-    x, y = plots.decimated(np.repeat(edges, 2)[1:-1], np.repeat(each, 2))
+    x, y = decimated(np.repeat(edges, 2)[1:-1], np.repeat(each, 2))
     ax.plot(x, y, color=colour, linewidth=0.7 + 1.1 * rank, alpha=0.55 + 0.4 * rank, label=label)
 
 
@@ -256,7 +258,7 @@ def _coherence(found: ProfileDescription) -> Illustration:
     assert found.coherence is not None
     figure = blank(SINGLE)
     ax = figure.subplots()
-    ax.plot(*found.coherence, color=plots.PALETTE[0], marker="o", markersize=3)
+    ax.plot(*found.coherence, color=PALETTE[0], marker="o", markersize=3)
     ax.set(xscale="log", xlim=DRAWN, ylim=(0.0, 1.05))
     ax.set_xlabel("spatial frequency [cycle/m]")
     ax.set_ylabel("coherence γ²")

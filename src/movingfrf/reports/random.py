@@ -11,9 +11,12 @@ import numpy as np
 from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import number, plain
-from movingfrf.reports import illustrations, plots
-from movingfrf.reports.illustrations import Illustration
-from movingfrf.reports.page import Setting, measure_tables, page
+from movingfrf.reports.axes import DRAWN_RANGE, decimated, draw_classes, legend_above
+from movingfrf.reports.coupled import MOVES_ALIKE
+from movingfrf.reports.curves import PALETTE, Curve, contact_curves, distinct, readable, telling
+from movingfrf.reports.figures import PANEL, SINGLE, Illustration, blank, drawing, illustrated
+from movingfrf.reports.page import page
+from movingfrf.reports.tables import Setting, measure_tables
 from movingfrf.results.labels import Measure, speed_in_words
 from movingfrf.roughness.spectra.iso import IsoRoad
 
@@ -65,7 +68,7 @@ def render(
         One HTML page without references to anything outside it. Equal input gives equal text.
     """
     curves = result if drawn is None else drawn
-    with illustrations.drawing():
+    with drawing():
         figures = [_forces(curves), *_motions(curves), _deflections(curves), _surface(curves)]
     messages = [finding["message"] for finding in json.loads(result.attrs["findings"])]
     contacts = wording.count(result.sizes["contact"], "contact")
@@ -169,13 +172,13 @@ def _method() -> list[str]:
     ]
 
 
-def _figure(result: xr.Dataset, quantity: str, curves: Sequence[plots.Curve], scale: float, label: str) -> Figure:
+def _figure(result: xr.Dataset, quantity: str, curves: Sequence[Curve], scale: float, label: str) -> Figure:
     """Draw amplitude densities over frequency, and below them which share of the variance lies below it."""
-    figure = illustrations.blank(illustrations.SINGLE + illustrations.PANEL)
+    figure = blank(SINGLE + PANEL)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(5, 3))
     frequency, densities = result.frequency.values, result[f"{quantity}_density"].values
     lowest, highest = np.inf, 0.0
-    for curve in plots.distinct(curves, densities):
+    for curve in distinct(curves, densities):
         density = densities[:, curve.column]
         amplitude, share = scale * np.sqrt(density), _below(frequency, density)
         if share[-1]:
@@ -183,11 +186,11 @@ def _figure(result: xr.Dataset, quantity: str, curves: Sequence[plots.Curve], sc
             above.plot(*_thinned(frequency, amplitude), color=curve.colour, label=curve.name)
             below.plot(*_thinned(frequency, 100 * share / share[-1]), color=curve.colour)
     if highest:
-        above.set(yscale="log", ylim=(max(lowest / 1.5, highest * np.sqrt(plots.DRAWN_RANGE)), 1.5 * highest))
+        above.set(yscale="log", ylim=(max(lowest / 1.5, highest * np.sqrt(DRAWN_RANGE)), 1.5 * highest))
     above.set_ylabel(label)
     below.set(ylim=(0, 101), xlabel="frequency [Hz]", ylabel="variance below [%]")
     _logarithmic(below, frequency)
-    plots.legend_above(above)
+    legend_above(above)
     return figure
 
 
@@ -197,7 +200,7 @@ def _below(frequency: FloatArray, density: FloatArray) -> FloatArray:
 
 
 def _thinned(frequency: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    return plots.decimated(frequency, values, buckets=DRAWN_FREQUENCIES // 2, logarithmic=True)
+    return decimated(frequency, values, buckets=DRAWN_FREQUENCIES // 2, logarithmic=True)
 
 
 def _logarithmic(ax: Axes, values: FloatArray) -> None:
@@ -211,24 +214,24 @@ def _logarithmic(ax: Axes, values: FloatArray) -> None:
 
 
 def _forces(result: xr.Dataset) -> Illustration:
-    figure = _figure(result, "contact_force", plots.contact_curves(result), 1.0, "force amplitude density [N/√Hz]")
+    figure = _figure(result, "contact_force", contact_curves(result), 1.0, "force amplitude density [N/√Hz]")
     caption = (
         "Amplitude spectral density of the dynamic contact forces, and the share of their variance that lies below "
         "a frequency: where that curve is steep, the force comes from. The humps are the vibrations of the body "
         "and of the wheels; dips between them come from the wheelbase, by which some waves lift and others pitch."
     )
     caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
-    return illustrations.illustrated("forces", "Contact forces", caption, figure)
+    return illustrated("forces", "Contact forces", caption, figure)
 
 
 def _deflections(result: xr.Dataset) -> Illustration:
     label = "deflection density [µm/√Hz]"
-    figure = _figure(result, "deflection", plots.contact_curves(result), 1e6, label)
+    figure = _figure(result, "deflection", contact_curves(result), 1e6, label)
     caption = (
         "Amplitude spectral density of the dynamic deflection of the road under each contact, and shares below."
     )
     caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
-    return illustrations.illustrated("deflections", "Deflections", caption, figure)
+    return illustrated("deflections", "Deflections", caption, figure)
 
 
 def _motions(result: xr.Dataset) -> list[Illustration]:
@@ -239,9 +242,9 @@ def _motions(result: xr.Dataset) -> list[Illustration]:
         if not dofs.size:
             continue
         curves = [
-            plots.Curve(int(dofs[n]), plots.readable(str(result.dof.values[dofs[n]])), plots.PALETTE[rank])
+            Curve(int(dofs[n]), readable(str(result.dof.values[dofs[n]])), PALETTE[rank])
             for rank, n in enumerate(
-                plots.telling(result.acceleration_rms.values[dofs], [unit] * dofs.size, wording.MOST_CURVES)
+                telling(result.acceleration_rms.values[dofs], [unit] * dofs.size, wording.MOST_CURVES)
             )
         ]
         figure = _figure(result, "acceleration", curves, 1.0, f"acceleration density [{unit}/s²/√Hz]")
@@ -249,29 +252,29 @@ def _motions(result: xr.Dataset) -> list[Illustration]:
             "Amplitude spectral density of the accelerations, and the share of their variance below a frequency."
         )
         caption += wording.some_of(dofs.size, len(curves), "degrees of freedom")
-        caption += illustrations.MOVES_ALIKE if len(curves) < dofs.size else ""
-        found.append(illustrations.illustrated(f"motion-{unit}", heading, caption, figure))
+        caption += MOVES_ALIKE if len(curves) < dofs.size else ""
+        found.append(illustrated(f"motion-{unit}", heading, caption, figure))
     return found
 
 
 def _surface(result: xr.Dataset) -> Illustration:
-    figure = illustrations.blank(illustrations.SINGLE)
+    figure = blank(SINGLE)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     n, speed = result.frequency.values / result.attrs["speed"], result.attrs["speed"]
     ends = n[[0, -1]]
     lowest, highest = IsoRoad.of_class("A").density(n)[-1], IsoRoad.of_class("H").density(n)[-1]
-    for curve in plots.distinct(plots.contact_curves(result), result.roughness_density.values):
+    for curve in distinct(contact_curves(result), result.roughness_density.values):
         seen = speed * result.roughness_density.values[:, curve.column]
         ax.plot(*_thinned(n, seen), color=curve.colour, label=curve.name)
         lowest, highest = min(lowest, seen[-1]), max(highest, float(seen.max()))
     ax.set(yscale="log", xlabel="spatial frequency [cycle/m]")
-    ax.set_ylim(max(lowest / 10, 1e-3 * plots.DRAWN_RANGE * highest), 5 * highest)
+    ax.set_ylim(max(lowest / 10, 1e-3 * DRAWN_RANGE * highest), 5 * highest)
     _logarithmic(ax, n)
-    plots.draw_classes(ax, ends)
+    draw_classes(ax, ends)
     ax.set_ylabel("spectral density $G_d$ [m³]")
-    plots.legend_above(ax)
+    legend_above(ax)
     caption = (
         "Spectral density of the road as the contacts see it, among the centre lines of the ISO 8608 classes A "
         "(smooth) to H (rough); a footprint takes the short waves away."
     )
-    return illustrations.illustrated("surface", "Road", caption, figure)
+    return illustrated("surface", "Road", caption, figure)

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 from movingfrf._basics.version import VERSION
 from movingfrf._basics.wording import number, plain
-from movingfrf.reports import illustrations, plots
-from movingfrf.reports.illustrations import Illustration
-from movingfrf.reports.page import Column, Row, Setting, Table, page
+from movingfrf.reports.axes import legend_above
+from movingfrf.reports.curves import GREY, PALETTE
+from movingfrf.reports.figures import SINGLE, Illustration, blank, drawing, illustrated
+from movingfrf.reports.page import page
+from movingfrf.reports.tables import Column, Row, Setting, Table
 from movingfrf.stepping.exchange import numba_is_there
 from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
 from movingfrf.studies.comparison.convergence import TARGETS
@@ -46,7 +48,7 @@ def render(comparison: Comparison) -> str:
         One HTML page without references to anything outside it.
     """
     scenario = comparison.scenario
-    with illustrations.drawing():
+    with drawing():
         figures = _figures(comparison) if comparison.curve else []
     return page(
         title=f"{scenario.name}: methods compared",
@@ -251,17 +253,17 @@ def _methods(comparison: Comparison) -> list[str]:
 
 def _colours(comparison: Comparison) -> dict[str, str]:
     """One colour for each method; more methods than colours share them."""
-    palette = plots.PALETTE
+    palette = PALETTE
     return {name: palette[n % len(palette)] for n, name in enumerate(_methods(comparison))}
 
 
 def _figures(comparison: Comparison) -> list[Illustration]:
     main, *others = comparison.reference.quantities
-    figure = illustrations.blank(illustrations.SINGLE + 1.6)
+    figure = blank(SINGLE + 1.6)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
-    plots.legend_above(_error_over_time(comparison, main, ax, targets=True))
+    legend_above(_error_over_time(comparison, main, ax, targets=True))
     found = [
-        illustrations.illustrated(
+        illustrated(
             "error-time",
             f"Error in {_name(main)} over time",
             "Each point is one run, each line one method over a range of steps; dashed lines with circles have "
@@ -272,13 +274,13 @@ def _figures(comparison: Comparison) -> list[Illustration]:
         )
     ]
     if others:
-        figure = illustrations.blank(illustrations.SINGLE + 0.8)
+        figure = blank(SINGLE + 0.8)
         axes = figure.subplots(1, len(others), sharex=True, squeeze=False)[0]
         for ax, name in zip(axes, others, strict=True):
             _error_over_time(comparison, name, ax, targets=False)
             ax.set_title(_name(name), fontweight="bold")
         found.append(
-            illustrations.illustrated(
+            illustrated(
                 "error-time-others",
                 "Errors in the other quantities over time",
                 "The same runs and colours, judged by the deflection without the static sag and by the "
@@ -293,7 +295,7 @@ def _error_over_time(comparison: Comparison, quantity: str, ax: Axes, *, targets
     colours = _colours(comparison)
     if targets:
         for target in comparison.equal_error:
-            ax.axhline(target, color=plots.GREY, linestyle=":", linewidth=1.2)
+            ax.axhline(target, color=GREY, linestyle=":", linewidth=1.2)
     for name in _methods(comparison):
         lines = _lines([point for point in comparison.curve if point.method == name])
         for (dashes, marker), line in zip(LINES[-len(lines) :], lines, strict=True):

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from movingfrf._basics.wording import number
-from movingfrf.reports.page import Column
+from movingfrf.reports.tables import Column
 from movingfrf.response.simulation import spectral_grid
 from movingfrf.stepping.duhamel import duhamel_loads
 from movingfrf.stepping.finite_track import finite_track

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf.reports import plots
-from movingfrf.reports.illustrations import drawing, drawn_svg
+from movingfrf.reports.axes import decimated
+from movingfrf.reports.curves import INK, PALETTE
+from movingfrf.reports.figures import drawing, drawn_svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,16 +42,16 @@ class Line(NamedTuple):
     linewidth: float = 1.1
 
 
-BLACK = Line(plots.INK, "-", 1.5)
+BLACK = Line(INK, "-", 1.5)
 BLUE, ORANGE, GREEN = (
-    Line(plots.PALETTE[0]),
-    Line(plots.PALETTE[1], (0, (5, 2))),
-    Line(plots.PALETTE[2], (0, (2, 1.2))),
+    Line(PALETTE[0]),
+    Line(PALETTE[1], (0, (5, 2))),
+    Line(PALETTE[2], (0, (2, 1.2))),
 )
 PINK, GOLD, SKY = (
-    Line(plots.PALETTE[3], (0, (5, 1.5, 1, 1.5))),
-    Line(plots.PALETTE[4], (0, (7, 1.5))),
-    Line(plots.PALETTE[5], (0, (1, 1))),
+    Line(PALETTE[3], (0, (5, 1.5, 1, 1.5))),
+    Line(PALETTE[4], (0, (7, 1.5))),
+    Line(PALETTE[5], (0, (1, 1))),
 )
 LINES = (BLUE, ORANGE, GREEN, PINK, GOLD, SKY)
 
@@ -79,7 +80,7 @@ def canvas(rows: int, columns: int, height: float, **how: Any) -> tuple[Figure, 
 
 def curve(ax: Axes, x: FloatArray, y: FloatArray, line: Line, label: str = "", **more: Any) -> None:
     """Draw a curve, thinned out to what the eye sees."""
-    ax.plot(*plots.decimated(np.asarray(x), np.asarray(y), buckets=1000), **line._asdict(), label=label, **more)
+    ax.plot(*decimated(np.asarray(x), np.asarray(y), buckets=1000), **line._asdict(), label=label, **more)
 
 
 def legend_outside(figure: Figure, ax: Axes) -> None:

@@ -13,8 +13,8 @@ from threadpoolctl import threadpool_limits
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.wording import number
 from movingfrf.guideways.guideway import Guideway
-from movingfrf.reports import plots
-from movingfrf.reports.page import Column
+from movingfrf.reports.curves import GREY
+from movingfrf.reports.tables import Column
 from movingfrf.response.line import SpectralGrid
 from movingfrf.stepping.duhamel import duhamel_loads
 from movingfrf.stepping.finite_guideway import FiniteGuideway
@@ -344,8 +344,8 @@ def _figure_11(cuts: FloatArray, errors: dict[str, FloatArray], coupled: dict[st
     for (name, values), line in zip(coupled.items(), (BLUE, PINK), strict=True):
         curve(right, cuts, values, line, name)
     for ax in (left, right):
-        ax.axhline(STATED, color=plots.GREY, linewidth=0.8, linestyle=":")
-        ax.axvline(TRUNCATION, color=plots.GREY, linewidth=0.8, linestyle=":")
+        ax.axhline(STATED, color=GREY, linewidth=0.8, linestyle=":")
+        ax.axvline(TRUNCATION, color=GREY, linewidth=0.8, linestyle=":")
         ax.set(xlabel="truncation [Hz]", yscale="log", ylim=(1e-9, 2), xlim=(0, HIGHEST))
         ax.legend()
     left.set_ylabel("relative error (L2)")

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from movingfrf.reports.page import Column
+from movingfrf.reports.tables import Column
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

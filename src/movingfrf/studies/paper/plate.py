@@ -13,8 +13,8 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import number
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.sampled import SampledGuideway
-from movingfrf.reports import plots
-from movingfrf.reports.page import Column
+from movingfrf.reports.curves import INK, PALETTE
+from movingfrf.reports.tables import Column
 from movingfrf.roughness.profile import Profile
 from movingfrf.stepping.coupled import cdfm
 from movingfrf.stepping.finite_plate import finite_plate, struck_plate
@@ -363,8 +363,8 @@ def _figure_18(models: Models, basin: Basin) -> Figure:
     figure.colorbar(drawn, ax=top, label="deflection [mm]")
     here = basin.deflection[basin.along == models.vehicle.positions[0]][0]
     curve(section, basin.across, 1e3 * here, BLUE, "plate")
-    section.axhline(1e3 * basin.average, color=plots.PALETTE[0], linewidth=0.9, linestyle="--", label="its average")
-    section.axhline(1e3 * models.beam, color=plots.INK, linewidth=1.0, label="plane model")
+    section.axhline(1e3 * basin.average, color=PALETTE[0], linewidth=0.9, linestyle="--", label="its average")
+    section.axhline(1e3 * models.beam, color=INK, linewidth=1.0, label="plane model")
     section.plot(models.vehicle.across[:2], [1e3 * basin.wheel] * 2, marker="s", **wheels)
     section.set(xlabel="across, left positive [m]", ylabel="deflection [mm]")
     section.set_ylim(None, 1e3 * here.max() + 0.08)

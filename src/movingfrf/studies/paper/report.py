@@ -14,8 +14,9 @@ from movingfrf._basics.arrays import finite
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.version import VERSION
 from movingfrf._basics.wording import number
-from movingfrf.reports.illustrations import inlined
-from movingfrf.reports.page import Column, Row, Table, rendered
+from movingfrf.reports.figures import inlined
+from movingfrf.reports.page import rendered
+from movingfrf.reports.tables import Column, Row, Table
 from movingfrf.studies.paper.drawing import drawn, journal
 from movingfrf.studies.paper.items import ITEMS, Reproduction, name_of
 from movingfrf.studies.paper.outcome import (

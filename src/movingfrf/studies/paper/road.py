@@ -11,8 +11,8 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.wording import number
 from movingfrf.guideways.foundations import Spring
 from movingfrf.guideways.track import Track
-from movingfrf.reports import plots
-from movingfrf.reports.page import Column
+from movingfrf.reports.curves import GREY
+from movingfrf.reports.tables import Column
 from movingfrf.response.line import SpectralGrid
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, LONGEST, PAPER, moving_impulse_response, struck_track
@@ -136,7 +136,7 @@ def _figure_05(
     curve(spectrum, frequency, 1e9 * np.abs(exact[:, 0]), BLACK, "closed form")
     curve(spectrum, frequency, 1e9 * np.abs(found[:, 0]), ORANGE, "40 m of finite elements")
     for at in (FALLING, TRUNCATION):
-        spectrum.axvline(at, color=plots.GREY, linewidth=0.8, linestyle=":")
+        spectrum.axvline(at, color=GREY, linewidth=0.8, linestyle=":")
     for n, (line, name) in enumerate(((BLUE, "ahead"), (SKY, "behind")), start=1):
         curve(sides, frequency, 1e9 * np.abs(exact[:, n]), line._replace(linestyle="-"), f"{name}, closed form")
         curve(sides, frequency, 1e9 * np.abs(found[:, n]), line._replace(linestyle=(0, (2, 1.5))), f"{name}, 40 m")

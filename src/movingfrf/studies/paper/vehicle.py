@@ -10,8 +10,8 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.welch import spectral_density, welch
 from movingfrf._basics.wording import number
-from movingfrf.reports import plots
-from movingfrf.reports.page import Column
+from movingfrf.reports.curves import GREY, INK, PALETTE, readable
+from movingfrf.reports.tables import Column
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.spectra.iso import IsoRoad
 from movingfrf.studies.comparison.convergence import TARGETS
@@ -83,7 +83,7 @@ def profile(study: Study) -> Outcome:
     ends = np.array([0.01, 10.0])
     centre = IsoRoad.of_class("A").density(ends)
     below.plot(ends, centre, **BLACK._asdict(), label="class A, centre")
-    below.plot(ends, 2 * centre, color=plots.INK, linestyle=":", label="class A, limit")
+    below.plot(ends, 2 * centre, color=INK, linestyle=":", label="class A, limit")
     below.set(xscale="log", yscale="log", xlabel="spatial frequency [cycle/m]", ylabel="$G_d$ [m³]")
     below.legend()
     return Outcome(
@@ -231,7 +231,7 @@ def accelerations(study: Study) -> Outcome:
     """Compare accelerations by moving FRF, CDFM and SIM."""
     found, exact = study.by_moving_frf, study.in_closed_form
     stepped, apart = study.by_cdfm, study.by_sim
-    names = [plots.readable(str(name)) for name in found.dof.values]
+    names = [readable(str(name)) for name in found.dof.values]
     pairs = {
         "moving FRF − CDFM": (found, stepped),
         "moving FRF − SIM": (found, apart),
@@ -444,13 +444,13 @@ def _dense_step(unknowns: int) -> float:
 def _error_over_time(study: Study) -> Figure:
     figure, (ax,) = canvas(1, 1, 4.2)
     for target in TARGETS:
-        ax.axhline(target, color=plots.GREY, linestyle=":", linewidth=0.8)
+        ax.axhline(target, color=GREY, linestyle=":", linewidth=0.8)
     lines: dict[str, dict[float, list[tuple[float, float]]]] = {}
     for point in study.compared.curve:
         element = -1.0 if math.isnan(point.element) else point.element
         of_method = lines.setdefault(point.method, {})
         of_method.setdefault(element, []).append((point.seconds, point.relative_l2["contact_force"]))
-    colours = (*plots.PALETTE, plots.INK, plots.GREY)
+    colours = (*PALETTE, INK, GREY)
     for (name, of_method), colour, marker in zip(lines.items(), colours, "osD^vPX*", strict=True):
         for element, points in sorted(of_method.items()):
             finest = element == min(of_method)

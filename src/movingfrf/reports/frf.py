@@ -1,0 +1,191 @@
+"""Figures of moving FRFs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.welch import spectral_density
+from movingfrf.guideways.guideway import Guideway
+from movingfrf.reports.axes import fit_height, legend_above, mark_truncation, upper_end
+from movingfrf.reports.curves import INK, PALETTE
+from movingfrf.reports.figures import SINGLE, STACKED, Illustration, blank, illustrated
+from movingfrf.results.labels import time_step_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+
+# Frequencies of the moving FRFs: how many, how far beyond the truncation, and at least up to there [Hz].
+FRF_POINTS, FRF_BEYOND, FRF_LEAST = 1500, 1.3, 40.0
+# Where nothing is left out: the moving FRF is drawn until it stays below this share of its largest amplitude.
+FRF_SMALL = 0.01
+# Distance of the line on which it is evaluated from the real axis, where an undamped road is infinite.
+FRF_DECAY = 1e-6
+
+# Orders of magnitude of a moving FRF that are drawn.
+FRF_RANGE = 1e-5
+
+
+def frf_figures(result: xr.Dataset, guideway: Guideway, offsets: list[float]) -> list[Illustration]:
+    """Illustrate moving FRFs between points some offsets [m] apart, as far as they matter to a result."""
+    speed, truncation = result.attrs["speed"], result.attrs.get("truncation", 0.0)
+
+    def frf(frequency: FloatArray, ahead: Sequence[float]) -> ComplexArray:
+        omega = 2 * np.pi * (frequency - 1j * FRF_DECAY * frequency[-1])
+        return guideway.moving_frf(np.asarray(ahead), speed, omega)
+
+    highest = _frf_end(result, frf)
+    frequency = np.linspace(0.0, highest, FRF_POINTS)
+    values = frf(frequency, offsets)
+    largest = np.abs(values).max(axis=0)
+    seen = np.flatnonzero(largest >= FRF_RANGE * largest.max())
+    values, offsets = values[:, seen], [offsets[place] for place in seen]
+    figure = blank(SINGLE + STACKED + 1.2)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(SINGLE, STACKED + 0.5))
+    mark = truncation if truncation < highest else None
+    legend_above(frf_amplitude(frequency, values, offsets, above, truncation=mark))
+    frf_phase(frequency, values, offsets, below, truncation=mark)
+    above.set_xlabel("")
+    beyond = "the road counts as rigid" if "contact_force" in result else "the response is left out"
+    return [illustrated("frf", "Moving FRFs of the road", _frf_words(values, offsets, mark, beyond), figure)]
+
+
+def _frf_end(result: xr.Dataset, frf: Callable[[FloatArray, Sequence[float]], ComplexArray]) -> float:
+    """Highest frequency to draw [Hz]: where deflections under contacts end, a truncation, or the FRF itself."""
+    step, truncation = time_step_of(result), result.attrs.get("truncation", 0.0)
+    nyquist = 0.5 / step
+    kept = max(FRF_BEYOND * truncation, FRF_LEAST) if 0 < truncation < nyquist else nyquist
+    if "contact_force" in result:
+        spectra = (spectral_density(deflection, step) for deflection in result.deflection.values.T)
+        ends = [upper_end(*spectrum) for spectrum in spectra if spectrum[0].size]
+        if ends:
+            return min(max(ends), kept)
+    if kept < nyquist:
+        return kept
+    frequency = np.linspace(0.0, nyquist, FRF_POINTS)
+    amplitude = np.abs(frf(frequency, [0.0])[:, 0])
+    needed = frequency[np.flatnonzero(amplitude >= FRF_SMALL * amplitude.max())[-1]] if amplitude.any() else 0.0
+    return float(min(max(FRF_BEYOND * needed, FRF_LEAST), nyquist))
+
+
+def _frf_words(values: ComplexArray, offsets: list[float], truncation: float | None, beyond: str) -> str:
+    if not values.any():
+        return "The road is rigid: no force deflects it, and its moving FRFs are zero."
+    words = (
+        "Deflection per unit force between points that travel along the road together, over the frequency that "
+        "they feel: how easily the road gives way, and how late. "
+    )
+    if any(offsets):
+        words += "At speed, a point ahead of the load and one equally far behind it respond differently. "
+    if truncation:
+        words += f"Beyond the truncation (dotted) {beyond}. "
+    return words.strip()
+
+
+def frf_amplitude(
+    frequency: FloatArray, frf: ComplexArray, offsets: ArrayLike, ax: Axes, *, truncation: float | None = None
+) -> Axes:
+    """Draw amplitudes of the moving FRF [µm/kN] over frequency [Hz].
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (frequency,)
+        Frequency in the moving frame [Hz].
+    frf : ndarray, shape (frequency, offset)
+        Moving FRF [m/N].
+    offsets : array_like, shape (offset,)
+        Receiver minus source [m], positive ahead.
+    ax : matplotlib.axes.Axes
+        Where to draw.
+    truncation : float, optional
+        Frequency to mark, beyond which the road counts as rigid [Hz].
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        `ax`.
+    """
+    amplitude = 1e9 * np.abs(frf)
+    for values, style in zip(amplitude.T, _offset_styles(offsets), strict=True):
+        ax.plot(frequency, values, **style)
+    if amplitude.any():
+        largest = float(amplitude.max())
+        ax.set_yscale("log")
+        ax.minorticks_off()
+        ax.set_ylim(max(0.5 * float(amplitude[amplitude > 0].min()), FRF_RANGE * largest), 2 * largest)
+    else:
+        fit_height(ax)
+    ax.set_ylabel("amplitude [µm/kN]")
+    return _finish_frf(ax, frequency, truncation)
+
+
+def frf_phase(
+    frequency: FloatArray, frf: ComplexArray, offsets: ArrayLike, ax: Axes, *, truncation: float | None = None
+) -> Axes:
+    """Draw phases of the moving FRF, unwrapped [degrees], over frequency [Hz], where the amplitude is drawn.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (frequency,)
+        Frequency in the moving frame [Hz], fine enough for the phase to be followed.
+    frf : ndarray, shape (frequency, offset)
+        Moving FRF [m/N].
+    offsets : array_like, shape (offset,)
+        Receiver minus source [m], positive ahead.
+    ax : matplotlib.axes.Axes
+        Where to draw.
+    truncation : float, optional
+        Frequency to mark, beyond which the road counts as rigid [Hz].
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        `ax`.
+    """
+    from matplotlib.ticker import MultipleLocator
+
+    amplitude = np.abs(frf)
+    seen = amplitude >= FRF_RANGE * amplitude.max()
+    phase = np.where(seen, np.degrees(np.unwrap(np.angle(frf), axis=0)), np.nan)
+    for values, style in zip(phase.T, _offset_styles(offsets), strict=True):
+        ax.plot(frequency, values, **style)
+    ax.set_ylabel("phase [°]")
+    fit_height(ax)
+    low, high = ax.get_ylim()
+    step = 45.0
+    while high - low > 6 * step:
+        step *= 2
+    ax.yaxis.set_major_locator(MultipleLocator(step))
+    return _finish_frf(ax, frequency, truncation)
+
+
+def _offset_styles(offsets: ArrayLike) -> list[dict[str, Any]]:
+    """Colour by side (ahead or behind), dashes by distance, and a label for each offset."""
+    values = np.atleast_1d(np.asarray(offsets, dtype=float)).tolist()
+    distances = sorted({abs(value) for value in values if value})
+    dashes = ("--", "-.", ":", (0, (7, 2)))
+    styles: list[dict[str, Any]] = []
+    for value in values:
+        if value == 0:
+            styles.append({"color": INK, "linestyle": "-", "linewidth": 1.5, "label": "under the load itself"})
+            continue
+        # The last colours of the palette are the least likely to stand for a contact as well.
+        side, colour = ("ahead", PALETTE[3]) if value > 0 else ("behind", PALETTE[5])
+        dash = dashes[distances.index(abs(value)) % len(dashes)]
+        label = f"{abs(value):.2f} m {side}"
+        styles.append({"color": colour, "linestyle": dash, "linewidth": 1.5, "label": label})
+    return styles
+
+
+def _finish_frf(ax: Axes, frequency: FloatArray, truncation: float | None) -> Axes:
+    ax.set_xlim(float(frequency[0]), float(frequency[-1]))
+    ax.set_xlabel("frequency [Hz]")
+    if truncation:
+        mark_truncation(ax, truncation)
+    return ax

@@ -1,0 +1,128 @@
+"""One HTML page about a result: settings, findings, measures and figures, with nothing outside the page."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from movingfrf._basics.wording import number, plain
+from movingfrf.guideways.guideway import Guideway
+from movingfrf.metrics.measures import measures
+from movingfrf.reports.coupled import CAPTIONS, coupled_method, coupled_summary, of_coupled
+from movingfrf.reports.figures import drawing
+from movingfrf.reports.loaded import loaded_method, loaded_summary, loaded_tables, of_loads
+from movingfrf.reports.page import page
+from movingfrf.reports.tables import Setting, measure_tables
+from movingfrf.results.labels import duration_of, time_step_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def render(result: xr.Dataset, *, guideway: Guideway, scenario_text: str = "", title: str = "") -> str:
+    """Write the report of a result.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What `simulate` or `moving_loads` returned.
+    guideway : Guideway
+        The guideway that it was computed for; its moving FRFs are drawn.
+    scenario_text : str
+        Text of the scenario file, shown as it is; by default what the result carries, if anything.
+    title : str
+        Title of the page; by default what the result calls itself.
+
+    Returns
+    -------
+    str
+        One HTML page without references to anything outside it. Equal input gives equal text.
+    """
+    coupled = "contact_force" in result
+    with drawing():
+        figures = of_coupled(result, guideway) if coupled else of_loads(result, guideway)
+    return page(
+        title=title or result.attrs.get("title", "Response of a guideway"),
+        version=result.attrs.get("movingfrf", "of unknown version"),
+        summary=coupled_summary(result) if coupled else loaded_summary(result),
+        settings=_settings(result),
+        findings=_findings(result),
+        no_findings=_no_findings(coupled),
+        tables=measure_tables(result, measures(result), CAPTIONS) if coupled else loaded_tables(result),
+        figures=figures,
+        method=coupled_method() if coupled else loaded_method(),
+        scenario=scenario_text or result.attrs.get("scenario", ""),
+    )
+
+
+def _settings(result: xr.Dataset) -> list[Setting]:
+    attrs, duration, step = result.attrs, duration_of(result), time_step_of(result)
+    critical = attrs.get("critical_speed", float("inf"))
+    speed = attrs["speed"]
+    found = [
+        Setting("Speed", f"{plain(speed)} m/s", f"{plain(round(3.6 * speed, 6))} km/h"),
+        Setting("Duration", f"{plain(duration)} s"),
+        Setting("Distance", f"{plain(float(f'{duration * abs(speed):.12g}'))} m"),
+        Setting("Time step", f"{plain(1e3 * step)} ms", f"{result.sizes['time']} samples"),
+        *_truncation_settings(result),
+        Setting(
+            "Critical speed of the road",
+            f"{number(critical)} m/s" if np.isfinite(critical) else "none",
+            f"{number(3.6 * critical)} km/h; this speed is {number(100 * abs(speed) / critical, 3)} % of it"
+            if np.isfinite(critical)
+            else "",
+        ),
+    ]
+    if "start" in attrs:
+        found.append(Setting("Start", f"{plain(attrs['start'])} m", "of the vehicle's reference point, at t = 0"))
+    if "blend" in attrs:
+        found.append(Setting("Blend", f"{plain(attrs['blend'])} m", "over which the profile sets in"))
+    if "datum" in attrs:
+        found.append(Setting("Datum", f"{number(attrs['datum'])} m", "subtracted from the profile's elevations"))
+    if "road" in attrs:
+        found.append(Setting("Roughness", attrs["road"], wide=True))
+    if "guideway" in attrs:
+        found.append(Setting("Road (SI units)", attrs["guideway"], wide=True))
+    return found
+
+
+def _truncation_settings(result: xr.Dataset) -> list[Setting]:
+    if "truncation" not in result.attrs:
+        return []
+    truncation, coupled = result.attrs["truncation"], "contact_force" in result
+    if not coupled:
+        if truncation >= 0.5 / time_step_of(result):
+            return [Setting("Truncation", "none", "every frequency of the record is kept")]
+        return [Setting("Truncation", f"{plain(truncation)} Hz", "the response beyond it is left out")]
+    error = result.attrs.get("truncation_error")
+    return [
+        Setting("Truncation", f"{truncation:.4g} Hz", "beyond it the road counts as rigid"),
+        *(
+            [
+                Setting(
+                    "Estimated truncation error",
+                    number(error, 2),
+                    "largest change of an output by the truncation, over the output's rms",
+                )
+            ]
+            if error is not None
+            else []
+        ),
+    ]
+
+
+def _findings(result: xr.Dataset) -> list[str]:
+    """Messages as sentences."""
+    messages = [finding["message"] for finding in json.loads(result.attrs.get("findings", "[]"))]
+    return [f"{message[:1].upper()}{message[1:].rstrip('.')}." for message in messages]
+
+
+def _no_findings(coupled: bool) -> str:
+    if coupled:
+        return (
+            "No findings: contact is kept throughout, the speed is well below critical, the response dies away "
+            "within the padded record, and truncation and time step leave nothing of weight out."
+        )
+    return "No findings: the speed is well below critical and the response dies away within the padded record."
