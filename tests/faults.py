@@ -856,7 +856,7 @@ FAULTS = [
     Fault("roll for a bounce", "reports/curves.py", "units[dof] != units[one] or abs(size", "abs(size"),
     Fault("wheels before bodies", "reports/curves.py", "key=lambda dof: rms[dof])", "key=lambda dof: -rms[dof])"),
     Fault("moving FRF up to a truncation", "reports/frf.py", "return min(max(ends), kept)", "return kept"),
-    Fault("table wider than the console", "commands/main.py", "if pieces[-1] and width > left:", "if False:"),
+    Fault("table wider than the console", "commands/console.py", "if pieces[-1] and width > left:", "if False:"),
     Fault("once in 1e46 seconds", "_basics/wording.py", "0 < value < NEVER", "0 < value < 0"),
     Fault("file without accelerations", "results/files.py", "if not label.optional]", "if label.optional]"),
 ]

@@ -13,7 +13,8 @@ import pytest
 import xarray as xr
 from rich.console import Console
 
-from movingfrf.commands.main import _cell, _head, _print_columns, main
+from movingfrf.commands.console import _head, _print_columns, cell_of
+from movingfrf.commands.main import main
 from movingfrf.results.labels import Measure
 from tests.test_scenario import LOADS, edited
 
@@ -188,9 +189,9 @@ def test_a_printed_table_fits_and_loses_nothing(width):
 
 def test_numbers_that_are_none_or_never():
     """A rate of 1e-46 a second says never; what has no value is a dash; what has no dimension has no unit."""
-    assert _cell(Measure("x", "lift-offs", 2.03e-46, "1/s")) == "< 1e-12"
-    assert _cell(Measure("x", "share", 0.0, "1")) == "0"
-    assert _cell(Measure("x", "rms", 2.03e-46, "m")) == "2.03e-46"
-    assert _cell(Measure("x", "crossing rate", float("nan"), "1/s")) == "–"
+    assert cell_of(Measure("x", "lift-offs", 2.03e-46, "1/s")) == "< 1e-12"
+    assert cell_of(Measure("x", "share", 0.0, "1")) == "0"
+    assert cell_of(Measure("x", "rms", 2.03e-46, "m")) == "2.03e-46"
+    assert cell_of(Measure("x", "crossing rate", float("nan"), "1/s")) == "–"
     assert _head("dynamic load coefficient", "1") == "dynamic load coefficient"
     assert _head("static", "N") == "static [N]"

@@ -1,0 +1,300 @@
+"""Commands about scenarios, vehicles and results."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from functools import partial
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+from rich.table import Table
+
+from movingfrf._basics.checks import ValidityWarning
+from movingfrf.commands.console import Stages, cell_of, plain_console, print_findings, print_result, print_sections
+from movingfrf.commands.root import app
+
+
+@app.command
+def new(file: Path | None = None, /, *, loads: bool = False, force: bool = False) -> None:
+    """Write a commented scenario to start from: a half truck on a class A road, or prescribed loads.
+
+    Parameters
+    ----------
+    file
+        The file to write; without it the scenario goes to standard output.
+    loads
+        Prescribed forces that travel along, instead of a vehicle.
+    force
+        Replace the file if it exists and differs.
+    """
+    template = "loads.toml" if loads else "scenario.toml"
+    text = files("movingfrf").joinpath("scenarios", "templates", template).read_text(encoding="utf-8")
+    if file is None:
+        sys.stdout.write(text)
+        return
+    if file.exists() and not force and file.read_text(encoding="utf-8", errors="replace") != text:
+        raise ValueError(f"{file} exists and differs; choose another name, or --force to replace it")
+    file.write_text(text, encoding="utf-8")
+    plain_console().print(f"wrote {file}", soft_wrap=True)
+
+
+@app.command
+def check(file: Path, /) -> None:
+    """Check a scenario and say what it describes, without solving it.
+
+    Parameters
+    ----------
+    file
+        The scenario.
+    """
+    from movingfrf.scenarios.description import described, remarks
+    from movingfrf.scenarios.reading import read_scenario
+
+    scenario = read_scenario(file)
+    console = plain_console()
+    print_sections(console, described(scenario))
+    if noted := remarks(scenario):
+        print_findings(console, noted)
+    console.print(f"{file}: in order", soft_wrap=True)
+
+
+@app.command
+def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Parameter(alias="-o")] = None) -> None:
+    """List the vehicles of the catalogue, or describe one: weight, contacts, natural frequencies, what vibrates.
+
+    Parameters
+    ----------
+    name
+        A vehicle of the catalogue, a file of matrices (.mat, .npz, .toml) or a scenario; all of the catalogue in
+        short by default.
+    output
+        A file, .npz or .mat, to write the vehicle's matrices to.
+    """
+    from movingfrf._basics.wording import count
+    from movingfrf.scenarios.description import described_vehicle
+    from movingfrf.scenarios.reading import named_vehicle
+    from movingfrf.vehicles.catalogue import CATALOGUE
+    from movingfrf.vehicles.files import write_vehicle
+    from movingfrf.vehicles.vehicle import GRAVITY
+
+    console = plain_console()
+    if name is None:
+        if output is not None:
+            raise ValueError("--output needs the name of a vehicle")
+        for one, entry in CATALOGUE.items():
+            made = entry.make()
+            mass = made.static_loads.sum() / GRAVITY
+            console.print(one, style="bold")
+            console.print(f"  {entry.summary}", soft_wrap=True)
+            console.print(
+                f"  {len(made.dof_names)} degrees of freedom, {count(len(made.contacts), 'contact')}, "
+                f"{mass / 1e3:.4g} t, {made.natural_frequencies.min():.3g} to {made.natural_frequencies.max():.3g} "
+                f"Hz, damped by {100 * made.damping_ratios.min():.2g} % or more",
+                soft_wrap=True,
+            )
+            console.print(f"  source: {entry.source}", soft_wrap=True)
+        console.print('\nin a scenario: [vehicle] kind = "catalogue", name = "half_truck"', soft_wrap=True)
+        return
+    vehicle = named_vehicle(name)
+    if name in CATALOGUE:
+        console.print(f"{name}: {CATALOGUE[name].summary}\nsource: {CATALOGUE[name].source}", soft_wrap=True)
+    print_sections(console, described_vehicle(vehicle))
+    if output is not None:
+        write_vehicle(vehicle, output)
+        console.print(f"wrote {output}", soft_wrap=True)
+
+
+@app.command
+def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] = None) -> None:
+    """Solve a scenario; write result.nc, summary.json and report.html.
+
+    The three files appear together when everything is done; an earlier result stays until then, and stays if
+    the run fails. Other files in the folder are left alone.
+
+    Parameters
+    ----------
+    file
+        The scenario.
+    output
+        The folder to write into; out/NAME beside the scenario by default.
+    """
+    console = plain_console()
+    stages = Stages()
+    with stages:
+        stages.report("loading", 0.0)
+        import matplotlib.figure  # noqa: F401
+        import scipy.interpolate  # noqa: F401
+        import xarray  # noqa: F401
+
+        from movingfrf.metrics.measures import measures
+        from movingfrf.reports.result import render
+        from movingfrf.results.files import replacing, save, summary
+        from movingfrf.scenarios.reading import read_scenario
+
+        stages.report("scenario", 0.0)
+        scenario = read_scenario(file)
+        folder = output if output is not None else file.parent / "out" / scenario.name
+        with replacing(folder) as temporary, warnings.catch_warnings():
+            # Findings are printed with the results; no need to warn of them as well.
+            warnings.simplefilter("ignore", ValidityWarning)
+            result = scenario.run(stages.report)
+            stages.report("measures", 0.0)
+            found = measures(result)
+            stages.report("result.nc", 0.0)
+            save(result, temporary / "result.nc")
+            (temporary / "summary.json").write_text(summary(result, found), encoding="utf-8")
+            stages.report("report.html", 0.0)
+            page = render(result, guideway=scenario.guideway, scenario_text=scenario.text, title=scenario.name)
+            (temporary / "report.html").write_text(page, encoding="utf-8")
+    if scenario.road is not None:
+        console.print(f"Road: {scenario.road.description}\n", soft_wrap=True)
+    print_result(console, result, found)
+    console.print(stages.table())
+    for name in ("report.html", "result.nc", "summary.json"):
+        console.print(f"wrote {folder / name}", soft_wrap=True)
+
+
+@app.command
+def random(
+    file: Path,
+    /,
+    *,
+    exposure: float = 600.0,
+    slope: float | None = None,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+) -> None:
+    """Compute the response of a scenario to all roads with its spectrum, without realising one.
+
+    Root mean squares, crossing rates and expected peaks of every response, dynamic load coefficients, how often
+    contact would be lost. Writes random.nc, summary.json and report.html.
+
+    Parameters
+    ----------
+    file
+        The scenario; its roughness must have a spectrum, as iso_road has.
+    exposure
+        Duration for which largest values are expected, in seconds.
+    slope
+        Exponent of an S-N curve; adds the steady amplitude that damages as much as each contact force.
+    output
+        The folder to write into; out/NAME-random beside the scenario by default.
+    """
+    console = plain_console()
+    stages = Stages()
+    with stages:
+        stages.report("loading", 0.0)
+        from movingfrf.metrics.measures import random_measures
+        from movingfrf.reports.random import drawing_frequencies, paths, render
+        from movingfrf.response.random import random_response
+        from movingfrf.results.files import replacing, save, summary
+        from movingfrf.scenarios.reading import read_scenario
+
+        scenario = read_scenario(file)
+        road = scenario.road
+        if road is None or scenario.vehicle is None:
+            raise ValueError(f"{file}: prescribed loads have no random road; a vehicle and a spectrum are needed")
+        if road.spectrum is None:
+            raise ValueError(
+                f"{file}: the roughness has no spectrum ({road.description}): it is one road, not all of a kind. "
+                "`movingfrf run` computes the response to it. A random road needs a kind with a spectrum, such as "
+                "iso_road with the roughness and waviness that `movingfrf check` fits to a measured profile"
+            )
+        folder = output if output is not None else file.parent / "out" / f"{scenario.name}-random"
+        with replacing(folder) as temporary, warnings.catch_warnings():
+            # Findings are printed with the results; no need to warn of them as well.
+            warnings.simplefilter("ignore", ValidityWarning)
+            response = partial(
+                random_response,
+                scenario.guideway,
+                scenario.vehicle,
+                road.spectrum,
+                speed=scenario.journey.speed,
+                coherence=road.coherence,
+                exposure=exposure,
+                progress=stages.report,
+            )
+            result = response().assign_attrs(scenario=scenario.text)
+            drawn = response(frequency=drawing_frequencies(result))
+            found = random_measures(result, slope=slope)
+            save(result, temporary / "random.nc")
+            (temporary / "summary.json").write_text(summary(result, found), encoding="utf-8")
+            stages.report("report.html", 0.0)
+            title = f"{scenario.name}: random road"
+            page = render(result, found, title=title, scenario=scenario.text, drawn=drawn)
+            (temporary / "report.html").write_text(page, encoding="utf-8")
+    console.print(f"Spectrum: {result.attrs['spectrum']}; {paths(result)}\n", soft_wrap=True)
+    print_result(console, result, found)
+    for name in ("report.html", "random.nc", "summary.json"):
+        console.print(f"wrote {folder / name}", soft_wrap=True)
+
+
+@app.command
+def measure(
+    file: Path,
+    /,
+    *,
+    contact: list[int] | None = None,
+    dof: list[str] | None = None,
+    weighting: str = "Wk",
+    slope: float | None = None,
+    since: Annotated[float, Parameter(name="--from")] = 0.0,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+) -> None:
+    """Measure an earlier result: comfort, load on the road, lost contact, fatigue.
+
+    Prints every measure with its unit and the standard or source that defines it, and below them what ISO 2631-1
+    makes of the degrees of freedom that were named.
+
+    Parameters
+    ----------
+    file
+        The result.nc of a run.
+    contact
+        Number of a contact; again for another. All by default.
+    dof
+        Name of a degree of freedom, where people are; again for another. All by default.
+    weighting
+        Frequency weighting of translations: Wk (vertical), Wd (horizontal), Wb (rail), Wf (motion sickness), Wc,
+        We, Wj. Rotations have We.
+    slope
+        Exponent of an S-N curve; adds the steady amplitude that damages as much as each contact force.
+    since
+        Leave out the first seconds, in which the vehicle runs in.
+    output
+        A file to write the measures to as well: .json or .csv.
+    """
+    from movingfrf.metrics.measures import assess
+    from movingfrf.results.files import load, measures_as_csv, summary
+
+    if output is not None and output.suffix not in (".json", ".csv"):
+        raise ValueError(f"{output}: must end in .json or .csv")
+    result = load(file)
+    found = assess(result, contacts=contact, dofs=dof, weighting=weighting, slope=slope, since=since)
+    console = plain_console()
+    table = Table(box=None, pad_edge=False)
+    for heading, justify in (("", "left"), ("value", "right"), ("unit", "left"), ("by", "left")):
+        table.add_column(heading, justify=justify, no_wrap=True, overflow="fold")  # type: ignore[arg-type]
+    above = ""
+    for taken in found:
+        if taken.quantity != above:
+            table.add_row(taken.quantity, style="bold")
+        units = "" if taken.units == "1" else taken.units
+        table.add_row(f"  {taken.name}", cell_of(taken), units, taken.standard)
+        above = taken.quantity
+    console.print(table)
+    notes = [f"{taken.quantity}, {taken.name}: {taken.note}" for taken in found if taken.note]
+    if notes:
+        console.print("\nNotes", style="bold")
+    for note in notes:
+        console.print(f"- {note}", soft_wrap=True)
+    if output is not None:
+        text = (
+            measures_as_csv(found)
+            if output.suffix == ".csv"
+            else summary(result.assign_attrs(measured_from=since), found)
+        )
+        output.write_text(text, encoding="utf-8")
+        console.print(f"wrote {output}", soft_wrap=True)

@@ -1,0 +1,115 @@
+"""Commands that take many solutions: the comparison of methods, the paper."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from movingfrf.commands.console import Stages, plain_console, print_findings, print_table
+from movingfrf.commands.root import app
+
+
+@app.command
+def compare(
+    file: Path,
+    /,
+    *,
+    methods: str | None = None,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    curve: bool = True,
+) -> None:
+    """Solve a scenario by several methods; compare their times, memory and errors.
+
+    Writes compare.json and compare.csv (the table), convergence.json and convergence.csv (errors over time for a
+    range of steps, times at equal error, how far the converged answer still moves) and report.html.
+
+    Parameters
+    ----------
+    file
+        The scenario.
+    methods
+        Names with commas between them: moving-frf, moving-frf-fe, moving-frf-fe-plain, duhamel, and with a vehicle
+        cdfm, cdfm-window, cdfm-weight, sim, with prescribed loads newmark, newmark-window; the usual ones by
+        default. Beside cdfm and newmark stands their variant on a road that travels along.
+    output
+        The folder to write into; out/NAME-compared beside the scenario by default.
+    curve
+        Whether to run all methods over a range of steps as well, which takes most of the time.
+    """
+    console = plain_console()
+    stages = Stages()
+    with stages:
+        stages.report("loading", 0.0)
+        from movingfrf.results.files import replacing
+        from movingfrf.scenarios.reading import read_scenario
+        from movingfrf.studies.comparison import files as written
+        from movingfrf.studies.comparison.comparison import compare as compared
+        from movingfrf.studies.comparison.page import findings, render, tables
+
+        scenario = read_scenario(file)
+        folder = output if output is not None else file.parent / "out" / f"{scenario.name}-compared"
+        names = None if methods is None else [name.strip() for name in methods.split(",") if name.strip()]
+        with replacing(folder) as temporary:
+            found = compared(scenario, names, curve=curve, progress=stages.report)
+            stages.report("report.html", 0.0)
+            texts = {
+                "compare.json": written.as_json(found),
+                "compare.csv": written.table_as_csv(found),
+                "convergence.json": written.convergence_as_json(found),
+                "convergence.csv": written.curve_as_csv(found),
+                "report.html": render(found),
+            }
+            for name, text in texts.items():
+                (temporary / name).write_text(text, encoding="utf-8")
+    for table in tables(found):
+        print_table(console, table)
+    print_findings(console, findings(found))
+    for name in texts:
+        console.print(f"wrote {folder / name}", soft_wrap=True)
+
+
+@app.command
+def paper(
+    *,
+    output: Annotated[Path, Parameter(alias="-o")] = Path("out/paper"),
+    only: str | None = None,
+    quick: bool = False,
+) -> None:
+    """Reproduce the paper on the moving FRF: every figure, table and claim, and whether it holds.
+
+    Writes report.html (one page, opens with the verdict), figures/ (PNG and SVG), tables/ (CSV) and paper.json (all
+    numbers). The scenario files ship with the package.
+
+    Parameters
+    ----------
+    output
+        The folder to write into.
+    only
+        Items with commas between them: 1 to 12, claim1 to claim5; all by default.
+    quick
+        Everything more coarsely, in less than a minute.
+    """
+    console = plain_console()
+    stages = Stages()
+    with stages:
+        stages.report("loading", 0.0)
+        from movingfrf.results.files import replacing
+        from movingfrf.studies.paper.items import chosen, reproduce
+        from movingfrf.studies.paper.report import verdict_table, write
+
+        names = None if only is None else [name.strip() for name in only.split(",") if name.strip()]
+        chosen(names)
+        with replacing(output) as temporary:
+            found = reproduce(names, quick=quick, progress=stages.report)
+            stages.report("writing", 0.0)
+            write(found, temporary, stages.report)
+            written = sorted(file.relative_to(temporary) for file in temporary.rglob("*") if file.is_file())
+    print_table(console, verdict_table(found))
+    for name in written:
+        if len(name.parts) == 1:
+            console.print(f"wrote {output / name}", soft_wrap=True)
+    for folder in sorted({name.parts[0] for name in written if len(name.parts) > 1}):
+        count = sum(name.parts[0] == folder for name in written)
+        console.print(f"wrote {count} files into {output / folder}", soft_wrap=True)
