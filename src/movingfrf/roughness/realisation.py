@@ -18,9 +18,10 @@ from movingfrf.roughness.spectra.spectrum import Spectrum
 # Bytes per sample and path that a realisation takes at its peak.
 BYTES_PER_SAMPLE = 64
 
-# Below it a pivot of a coherence matrix is rounding: the path adds nothing to those before it. What is then left in
-# its column is at most the square root of the pivot, if the matrix is one of coherences.
-SMALLEST_PIVOT, LARGEST_REST = 1e-13, 1e-5
+# Below it a pivot of a coherence matrix is rounding: the path adds nothing to those before it. Of a coherence known
+# to 1e-15 a pivot p is known to 1e-15/p of itself, and so is what it passes on to later paths; the path loses √p of
+# its size. What is then left in its column is at most √p as well, if the matrix is one of coherences.
+SMALLEST_PIVOT, LARGEST_REST = 1e-10, 1e-4
 
 # Nearer to a Gaussian road than this the gamma distribution has no meaningful shape.
 LEAST_SPREAD = 1e-9

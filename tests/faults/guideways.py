@@ -1,0 +1,49 @@
+"""Waves, their sides, the layers below a beam; what a struck road remembers."""
+
+from __future__ import annotations
+
+from tests.faults.fault import Fault
+
+FAULTS = [
+    # Guideway: waves, sides, layers.
+    Fault("direction of travel", "guideways/waves.py", "-1j * speed", "1j * speed"),
+    Fault(
+        "no convective terms", "guideways/waves.py", "for j in range(b + 1 if linear else 1)", "for j in range(1)"
+    ),
+    Fault("binomial missing", "guideways/waves.py", "comb(b, j) *", "1.0 *"),
+    Fault("sides exchanged", "guideways/waves.py", "(ahead >= 0) == forward", "(ahead < 0) == forward"),
+    Fault("two waves on each side", "guideways/waves.py", "(side > 0) == forward", "(kappa.real > 0) == forward"),
+    Fault("sign behind", "guideways/waves.py", "frf[here] *= -1.0", "frf[here] *= 1.0"),
+    Fault(
+        "undamped limit from above",
+        "guideways/waves.py",
+        "(by_omega / slope).real",
+        "-(by_omega / slope).real",
+    ),
+    Fault("undamped limit missing", "guideways/waves.py", "<= REAL_WITHIN * rounding", "< 0.0 * rounding"),
+    Fault("slope sign", "guideways/waves.py", "(1j * kappa) ** derivative", "(-1j * kappa) ** derivative"),
+    Fault("decay along the road", "guideways/waves.py", "np.exp(1j * kappa[", "np.exp(-1j * kappa["),
+    Fault("sleeper inertia sign", "guideways/foundations.py", "{(0, 2): self.mass}", "{(0, 2): -self.mass}"),
+    Fault("sleeper on a dashpot", "guideways/foundations.py", "{(0, 2): self.mass}", "{(0, 1): self.mass}"),
+    Fault("rotary inertia sign", "guideways/beams.py", "rotation[0, 2] = inertia", "rotation[0, 2] = -inertia"),
+    Fault("rotary inertia forgotten", "guideways/beams.py", "shearing[2, 2] = shear * inertia", "pass"),
+    Fault("bending damping order", "guideways/beams.py", "terms[4, 1]", "terms[2, 1]"),
+    Fault(
+        "shear layer as a spring",
+        "guideways/foundations.py",
+        "{(2, 0): self.shear_stiffness}",
+        "{(0, 0): self.shear_stiffness}",
+    ),
+    Fault("layers side by side", "guideways/foundations.py", ".in_series(layer)", " + layer"),
+    # Plates.
+    Fault(
+        "place of the source for the offset across",
+        "guideways/sampled.py",
+        "else (self.across, self.source_across)",
+        "else (self.source_across, self.across)",
+    ),
+    # Steady travel, footprint, prescribed forces.
+    Fault("first sample counts fully", "guideways/sampled.py", "samples[0] *= 0.5", "samples[0] *= 1.0"),
+    Fault("transform of the other sign", "guideways/sampled.py", "phase = -1j", "phase = 1j"),
+    Fault("nothing is beyond Nyquist", "guideways/sampled.py", "<= np.pi / self.time_step", "<= np.inf"),
+]

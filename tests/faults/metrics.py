@@ -1,0 +1,126 @@
+"""Comfort, loads, fatigue, indices of a profile, decay along a track."""
+
+from __future__ import annotations
+
+from tests.faults.fault import Fault
+
+FAULTS = [
+    # Random roads.
+    Fault("history taken for a spectrum", "metrics/fatigue.py", '"contact_force_density" not in', '"" in'),
+    Fault("wide trapezoids", "metrics/fatigue.py", "(0.5 * (gaps[1:]", "(1.0 * (gaps[1:]"),
+    # Measures.
+    Fault(
+        "rounded window of the IRI",
+        "metrics/iri.py",
+        "- 1, 0), (window**2 - 1) / 12",
+        "- 1, 0), (round(window) ** 2 - 1) / 12",
+    ),
+    Fault("average counted twice", "metrics/iri.py", "(window**2 - 1) / 12", "window**2 / 12"),
+    Fault("car starts level", "metrics/iri.py", "zi=[-keep * gain * start]", "zi=[0.0 * gain]"),
+    Fault("one mode of the golden car", "metrics/iri.py", "found += 2 * driven.real", "found = 2 * driven.real"),
+    Fault(
+        "ride number of the mean path",
+        "metrics/iri.py",
+        "np.sqrt(square.mean(axis=1))",
+        "np.sqrt(square).mean(axis=1)",
+    ),
+    Fault("segments one step late", "metrics/iri.py", "bounds - half, 0", "bounds - half + 1, 0"),
+    Fault("step of a weighting turned", "metrics/comfort.py", "* (f5 / f6) ** 2", "* (f6 / f5) ** 2"),
+    Fault("transition without its zero", "metrics/comfort.py", "(1 + p / (2 * np.pi * first))", "1"),
+    Fault(
+        "weighting wraps around",
+        "metrics/comfort.py",
+        "len(values) + int(np.ceil(memory / time_step))",
+        "len(values)",
+    ),
+    Fault(
+        "dose of squares",
+        "metrics/comfort.py",
+        "**4, axis=0) * time_step) ** 0.25",
+        "**2, axis=0) * time_step) ** 0.25",
+    ),
+    Fault(
+        "running rms of a mean",
+        "metrics/comfort.py",
+        "np.arange(1, len(energy)) - steps, 0)",
+        "np.arange(1, len(energy)) - 2 * steps, 0)",
+    ),
+    Fault("rear axle first", "metrics/loads.py", "(points - start) / speed", "(points + start) / speed"),
+    Fault(
+        "static load forgotten", "metrics/loads.py", "force = static[contact] + CubicSpline", "force = CubicSpline"
+    ),
+    Fault("tension wears", "metrics/loads.py", "np.maximum(force, 0.0) ** power", "np.abs(force) ** power"),
+    Fault("paths added up", "metrics/loads.py", "np.searchsorted(numbers, paths[contact])", "0 * paths[contact]"),
+    Fault(
+        "repeatability of the mean",
+        "metrics/loads.py",
+        "other - other.mean(axis=0)",
+        "other - 0.0 * other.mean(axis=0)",
+    ),
+    Fault(
+        "ranges for amplitudes",
+        "metrics/fatigue.py",
+        "np.abs(ends[:, 1] - ends[:, 0]) / 2",
+        "np.abs(ends[:, 1] - ends[:, 0])",
+    ),
+    Fault(
+        "open cycles lost",
+        "metrics/fatigue.py",
+        "for pairs in (closed, fatpack.find_rainflow_cycles(again)[0])",
+        "for pairs in (closed,)",
+    ),
+    Fault(
+        "variance for deviation",
+        "metrics/fatigue.py",
+        "np.exp(0.5 * slope * np.log(variance)",
+        "np.exp(slope * np.log(variance)",
+    ),
+    Fault("falling through a level", "metrics/fatigue.py", "np.diff(history) > 0", "np.diff(history) < 0"),
+    Fault(
+        "accelerance with the wrong sign",
+        "metrics/guideway.py",
+        "(1j * omega[:, None]) ** power",
+        "omega[:, None] ** power",
+    ),
+    Fault("decay rate: half a step at the end", "metrics/guideway.py", "/ 2, steps[-1:]]", "/ 2, steps[-1:] / 2]"),
+    Fault(
+        "decay of the nearest wave",
+        "metrics/guideway.py",
+        "np.abs(kappa.imag).min(axis=0)",
+        "np.abs(kappa.imag).max(axis=0)",
+    ),
+    Fault("damage beyond a Gaussian process", "metrics/fatigue.py", "if not 0 < share <= 1 + BOUND:", "if False:"),
+    Fault("damage of a negative life", "metrics/fatigue.py", "if not 0 < share <= 1", "if not share <= 1"),
+    Fault("load that hangs divides", "metrics/loads.py", "where=load > 0)", "where=load != 0)"),
+    Fault("load that hangs wears", "metrics/loads.py", "max(static[contact], 0.0)", "static[contact]"),
+    Fault("points beyond memory", "metrics/loads.py", "(last - first) / spacing * (BYTES", "0 * (BYTES"),
+    Fault("window longer than the road", "metrics/iri.py", "elif shortest > length:", "elif False:"),
+    Fault("feet felt like the seat", "metrics/comfort.py", "[SEATED[name] for name in rms]", "1.0"),
+    Fault(
+        "histories mixed",
+        "metrics/comfort.py",
+        "np.reshape(values, (shape[0], -1))",
+        "np.reshape(values, (-1, 1))",
+    ),
+    # Profiles from files.
+    Fault("trend left in the spectrum", "metrics/profile.py", "piece -= np.outer", "_ = np.outer"),
+    Fault("coherence of amplitudes", "metrics/profile.py", "(real**2 + imaginary**2)", "np.hypot(real, imaginary)"),
+    Fault("edges counted with spikes", "metrics/profile.py", "np.flatnonzero(peak & (bend", "np.flatnonzero((bend"),
+    Fault("millimetres pass for metres", "metrics/profile.py", '(2 * CLASS_CENTRES["G"], 200.0)', "(1e9, 1e9)"),
+    Fault("one level stretch of many", "metrics/profile.py", "[:MOST_STRETCHES]", "[:1]"),
+    # What is left out, told apart, cut and refused.
+    Fault(
+        "vehicle that never runs in",
+        "metrics/measures.py",
+        "whole, result = result, result.isel",
+        "whole, _ = result, result.isel",
+    ),
+    Fault(
+        "weighting that starts anew",
+        "metrics/comfort.py",
+        "values = weighted(acceleration, time_step, weighting)[first:]",
+        "values = weighted(np.asarray(acceleration)[first:], time_step, weighting)",
+    ),
+    Fault("limit the other way", "metrics/measures.py", "if name in felt.exceeded", "if name not in felt.exceeded"),
+    Fault("one refusal for all", "metrics/measures.py", "if common_points(result).size:", "if True:"),
+]

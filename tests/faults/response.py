@@ -1,0 +1,132 @@
+"""The transform, the coupled system, its stability and truncation, random roads."""
+
+from __future__ import annotations
+
+from tests.faults.fault import Fault
+
+FAULTS = [
+    # Spectra and time.
+    Fault("window sign", "response/line.py", "np.exp(-self.decay", "np.exp(self.decay"),
+    Fault("window not undone", "response/line.py", "np.exp(self.decay", "np.exp(0.0 * self.decay"),
+    Fault("line on the real axis", "response/line.py", "- 1j * self.decay", "+ 0j * self.decay"),
+    Fault(
+        "hertz for radians",
+        "response/line.py",
+        "2 * np.pi / (self.padded * self.time_step)",
+        "1 / (self.padded * self.time_step)",
+    ),
+    Fault(
+        "truncation in radians",
+        "response/line.py",
+        "int(share * self.truncation * self",
+        "int(share * self.truncation / 6.283 * self",
+    ),
+    Fault("truncation that cuts sharply", "response/line.py", "STIFFENING = 0.05", "STIFFENING = 1e-6"),
+    Fault(
+        "road that does not stiffen",
+        "response/solve.py",
+        "frf * grid.compliance(slice(first, first + kept))[:, None, None]",
+        "frf * 1.0",
+    ),
+    Fault(
+        "load's road that does not fade",
+        "response/moving_loads.py",
+        "frf * grid.compliance(some)[:, None, None]",
+        "frf * 1.0",
+    ),
+    Fault("whole weight at the start", "response/line.py", "padded[:, 0] *= 0.5", "padded[:, 0] *= 1.0"),
+    Fault(
+        "record stops at its end",
+        "response/line.py",
+        "row[self.samples :] = self._continuation(history)",
+        "row[self.samples :] = 0.0",
+    ),
+    Fault("acceleration sign", "response/line.py", "(1j * self.omega(", "(1 * self.omega("),
+    Fault("velocity for acceleration", "response/solve.py", "derivative=2", "derivative=1"),
+    # Coupling.
+    Fault("roughness sign", "response/solve.py", "displacement = -roughness[", "displacement = +roughness["),
+    Fault(
+        "beyond the truncation nothing moves",
+        "response/solve.py",
+        "        motion[first:last], force",
+        "        displacement[kept:] = 0.0\n        motion[first:last], force",
+    ),
+    Fault("deflection lifts the vehicle", "response/solve.py", "displacement[:kept] +=", "displacement[:kept] -="),
+    Fault(
+        "sag leaves the loads alone",
+        "response/system.py",
+        "np.linalg.solve(np.eye(len(frf)) + stiffness @ frf, system.vehicle.static_loads)",
+        "system.vehicle.static_loads",
+    ),
+    Fault("steady basin reversed", "response/system.py", "deflection=frf @ load", "deflection=frf.T @ load"),
+    Fault("static sag missing", "response/simulation.py", "deflection += steady.deflection", "pass"),
+    Fault("enveloping left out", "response/simulation.py", "if contact.envelops]", "if False]"),
+    Fault("stability: the arc left out", "response/stability.py", "if not rigid:", "if True:"),
+    Fault("unstable taken for stable", "response/stability.py", "round(-float(turned)", "round(float(turned)"),
+    Fault("stability not looked at", "response/stability.py", "    if growing:\n", "    if False:\n"),
+    # Random roads.
+    Fault(
+        "rear wheel first", "response/random.py", "np.exp(2j * np.pi * np.outer", "np.exp(-2j * np.pi * np.outer"
+    ),
+    Fault(
+        "density over the road",
+        "response/random.py",
+        "self.spectrum.density(n) / self.speed",
+        "self.spectrum.density(n)",
+    ),
+    Fault("coherence squared", "response/random.py", "vectors * np.sqrt(np.maximum", "vectors * (np.maximum"),
+    Fault("impossible coherence", "response/random.py", "SEMIDEFINITE = 1e-9", "SEMIDEFINITE = 1e9"),
+    Fault(
+        "random: velocity for acceleration", "response/random.py", "omega[:, None] ** 4 *", "omega[:, None] ** 2 *"
+    ),
+    Fault("rounding moves", "response/random.py", "ROUNDING = 1e-20", "ROUNDING = 1e-60"),
+    Fault(
+        "crossings by the fourth moment", "response/random.py", "_rate(second, variance)", "_rate(fourth, second)"
+    ),
+    Fault("lift-offs too rare", "response/statistics.py", "(crossing) * np.exp(-0.5", "(crossing) * np.exp(-1.0"),
+    Fault("lift-offs unseen", "response/statistics.py", "if often > LIFT_OFFS or part", "if False and part"),
+    Fault("end of the band unseen", "response/random.py", "if share <= AT_THE_END:", "if share >= 0:"),
+    Fault("weighting of amplitudes", "response/random.py", "lines.frequency)) ** 2", "lines.frequency))"),
+    Fault(
+        "first level counted too often",
+        "response/statistics.py",
+        "- 0.5 * exceeded[..., 0]",
+        "+ 50 * exceeded[..., 0]",
+    ),
+    Fault("coherence of any shape", "response/random.py", "if shared.shape != shape:", "if False:"),
+    Fault(
+        "path unlike itself",
+        "response/random.py",
+        "axis1=1, axis2=2) - 1) > SEMI",
+        "axis1=1, axis2=2) - 1) > 1e9 + SEMI",
+    ),
+    Fault(
+        "lopsided coherence",
+        "response/random.py",
+        "shared.swapaxes(1, 2)) > SEMI",
+        "shared.swapaxes(1, 2)) > 9 + SEMI",
+    ),
+    Fault("damping always blamed", "response/random.py", "NEXT_TO_NONE = 1e-9", "NEXT_TO_NONE = 1e9"),
+    Fault("threads that wait", "response/solve.py", "with unthreaded(contacts):", "with unthreaded(1):"),
+    Fault("coarse panels", "response/quadrature.py", "UNRESOLVED = 1e-3", "UNRESOLVED = 1e3"),
+    Fault("panels that overlap", "response/quadrature.py", "= low[~rough], high", "= low[~rough] - 0.01, high"),
+    Fault(
+        "road that lifts the vehicle twice",
+        "response/solve.py",
+        "[some] - roughness[some]",
+        "[some] + roughness[some]",
+    ),
+    Fault(
+        "acceleration along the motion",
+        "response/transfer.py",
+        "-(omega[:, None, None] ** 2)",
+        "(omega[:, None, None] ** 2)",
+    ),
+    # What is left out, told apart, cut and refused.
+    Fault(
+        "rounding that is felt",
+        "response/random.py",
+        'statistics["acceleration_rms"] > 0, _',
+        'statistics["acceleration_rms"] >= 0, _',
+    ),
+]

@@ -1,0 +1,189 @@
+"""Spectra, realisations, shapes, what a contact sees; profiles from files and what is done to them."""
+
+from __future__ import annotations
+
+from tests.faults.fault import Fault
+
+FAULTS = [
+    # Road.
+    Fault("two-sided density", "roughness/realisation.py", "np.sqrt(variance / 2)", "np.sqrt(variance)"),
+    Fault("arithmetic class centres", "roughness/spectra/iso.py", "16e-6 * 4.0**n", "20e-6 * 4.0**n"),
+    Fault("limits at the centres", "roughness/spectra/iso.py", "roughness < 2 * centre", "roughness < centre"),
+    Fault(
+        "waviness ignored",
+        "roughness/spectra/spectrum.py",
+        "power = 1 - np.asarray(exponent, float)",
+        "power = np.array(-1.0)",
+    ),
+    Fault(
+        "variance from zero on",
+        "roughness/spectra/spectrum.py",
+        "self._integral(self.band[0],",
+        "self._integral(0.5 * self.band[0],",
+    ),
+    Fault(
+        "content beside the band",
+        "roughness/spectra/spectrum.py",
+        "np.where(n == spatial_frequency, self._formula(n), 0.0)",
+        "self._formula(n)",
+    ),
+    Fault(
+        "per radian",
+        "roughness/spectra/rail.py",
+        "FRA_CORNER**2 / (2 * np.pi) ** 3",
+        "FRA_CORNER**2 / (2 * np.pi) ** 2",
+    ),
+    Fault(
+        "German per radian",
+        "roughness/spectra/rail.py",
+        "return self.roughness / (2 * np.pi) * c**2",
+        "return self.roughness * c**2",
+    ),
+    Fault("cubic centimetres", "roughness/spectra/rail.py", "3.9488e-4]) * 1e-6", "3.9488e-4]) * 1e-4"),
+    Fault("pieces without an end", "roughness/spectra/rail.py", "np.array([*CHINESE_BREAKS, np.inf])", "np.inf"),
+    Fault("partial fraction", "roughness/spectra/rail.py", "b**2 / 3 * (low", "b**2 * (low"),
+    Fault(
+        "level of an amplitude",
+        "roughness/spectra/tabulated.py",
+        "REFERENCE**2 * 10 ** (np.asarray(self.level)[order] / 10)",
+        "REFERENCE**2 * 10 ** (np.asarray(self.level)[order] / 20)",
+    ),
+    Fault(
+        "levels in the order given",
+        "roughness/spectra/tabulated.py",
+        "order = np.argsort(-np.asarray(self.wavelength))",
+        "order = np.arange(np.size(self.wavelength))",
+    ),
+    Fault(
+        "table straight in density",
+        "roughness/spectra/tabulated.py",
+        "np.interp(np.log(n), np.log(knots), np.log(values))",
+        "np.log(np.interp(n, knots, values))",
+    ),
+    # Paths, distributions, shapes.
+    Fault(
+        "coherence over half of the distance",
+        "roughness/spectra/coherence.py",
+        "z = 2 * np.pi * np",
+        "z = np.pi * np",
+    ),
+    Fault(
+        "waviness for the order",
+        "roughness/spectra/coherence.py",
+        "order = self.waviness / 2",
+        "order = self.waviness / 2.5",
+    ),
+    Fault(
+        "paths without an own part",
+        "roughness/realisation.py",
+        "own = rest[:, :1] > SMALLEST_PIVOT",
+        "own = rest[:, :1] > 0.9",
+    ),
+    Fault(
+        "coherence squared in realisations",
+        "roughness/realisation.py",
+        "rest = matrix[:, j:, j] -",
+        "rest = matrix[:, j:, j] ** 2 -",
+    ),
+    Fault(
+        "spread of a Laplace road",
+        "roughness/realisation.py",
+        "spread = kurtosis / 3 - 1",
+        "spread = kurtosis / 6 - 0.5",
+    ),
+    Fault(
+        "Laplace road half as rough",
+        "roughness/realisation.py",
+        "rng.gamma(1 / spread, spread,",
+        "rng.gamma(1 / spread, spread / 2,",
+    ),
+    Fault("segments of a step", "roughness/realisation.py", "* (step / segment) *", "*"),
+    Fault(
+        "a flat lifts the wheel",
+        "roughness/irregularities.py",
+        "elevation = -(np.maximum(chord / 2",
+        "elevation = (np.maximum(chord / 2",
+    ),
+    Fault("flat once per diameter", "roughness/irregularities.py", "at, 2 * np.pi * radius))", "at, 2 * radius))"),
+    Fault("pothole that rises", "roughness/irregularities.py", "-depth * smooth_step(", "depth * smooth_step("),
+    Fault(
+        "weld twice as deep",
+        "roughness/irregularities.py",
+        "d * np.cos(np.pi * np.clip(",
+        "2 * d * np.cos(np.pi * np.clip(",
+    ),
+    Fault(
+        "joints that do not bend",
+        "roughness/irregularities.py",
+        "1 - away / reach, 0.0) ** 2",
+        "1 - away / reach, 0.0)",
+    ),
+    Fault("wheel that falls into a gap", "roughness/combination.py", "relief = min(", "relief = 0.5 * min("),
+    Fault(
+        "sum on the first grid",
+        "roughness/combination.py",
+        "[profile.stations for profile in profiles]))",
+        "[profile.stations for profile in profiles[:1]]))",
+    ),
+    Fault(
+        "strangers taken for one path", "roughness/road.py", "return 0.0 if different", "return 1.0 if different"
+    ),
+    Fault(
+        "surface without a coherence",
+        "roughness/road.py",
+        "return coherence if coherence is not None else presumed(spectrum)",
+        "return coherence",
+    ),
+    Fault("seed ignored", "roughness/realisation.py", "default_rng(number)", "default_rng(0)"),
+    Fault("second path is the first", "roughness/profile.py", "elevation[:, path]", "elevation[:, 0]"),
+    Fault("datum left in", "roughness/excitation.py", "seen -= datums[path]", "pass"),
+    Fault("blend twice as long", "roughness/excitation.py", "- foremost) / blend", "- foremost) / (2 * blend)"),
+    Fault(
+        "each wheel blends from its own start",
+        "roughness/excitation.py",
+        "(distance[:blending] - foremost)",
+        "(distance[:blending] - distance[0])",
+    ),
+    Fault("wheels exchanged along the road", "roughness/excitation.py", "(start + position)", "(start - position)"),
+    Fault("rate of the blending missing", "roughness/excitation.py", "smooth_step_slope(setting_in)", "0.0"),
+    # Profiles from files.
+    Fault("units not converted", "roughness/formats/base.py", "else values * scale", "else values"),
+    Fault("decimal comma taken for none", "roughness/formats/columns.py", "decimal=layout.decimal", 'decimal="."'),
+    Fault("right for left in a grid", "roughness/formats/crg.py", "road.surface_z()[:, ::-1]", "road.surface_z()"),
+    Fault("slope and banking left out", "roughness/formats/crg.py", "road.surface_z()[", "road.z["),
+    Fault("first path of an ERD file twice", "roughness/formats/erd.py", "values[:, n]", "values[:, 0]"),
+    Fault("sphere for the ellipsoid", "roughness/formats/gpx.py", "6.694_379_990_141e-3", "0.0"),
+    Fault("paths between sections", "roughness/files.py", "rights + share * (lefts - rights)", "rights"),
+    Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
+    Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
+    Fault("high pass of first order", "roughness/preparation.py", "butter(GENTLE, 1 /", "butter(1, 1 /"),
+    Fault(
+        "resampled with aliases",
+        "roughness/preparation.py",
+        "if step > old * (1 + 1e-6):",
+        "if step > old * (1 + 1e6):",
+    ),
+    Fault("spikes left in", "roughness/preparation.py", "column[out] = np.interp", "_ = np.interp"),
+    Fault("mirror doubles its end", "roughness/preparation.py", "% (2 * last) - last", "% (2 * last + 1) - last"),
+    Fault("steps forgotten", "roughness/preparation.py", "steps=(*profile.steps, sentence)", "steps=(sentence,)"),
+    Fault(
+        "fitted beyond the content",
+        "roughness/fitting.py",
+        "start + _until_cliff(log_n",
+        "log_n.size + 0 * len(log_n",
+    ),
+    Fault(
+        "fitted below the content", "roughness/fitting.py", "return end - _until_cliff", "return 0 * _until_cliff"
+    ),
+    Fault("long waves that bend cut off", "roughness/fitting.py", "beyond = max(slope, 0.0)", "beyond = 0.0"),
+    Fault("corner of a filter fitted", "roughness/fitting.py", "(below[:end] < KEPT)", "(below[:end] < np.inf)"),
+    Fault("any spectrum a power law", "roughness/fitting.py", "> LARGEST_MISFIT:", "> np.inf:"),
+    Fault("class from far away", "roughness/fitting.py", "if not near or", "if"),
+    Fault("no doubt about a class", "roughness/fitting.py", "< CLASS_WIDTH", "< np.inf"),
+    Fault(
+        "equal paths told apart",
+        "roughness/profile.py",
+        "setdefault(blake2b(column + 0.0).digest()",
+        "setdefault(bytes([path])",
+    ),
+]

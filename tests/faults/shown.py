@@ -1,0 +1,27 @@
+"""What is read and shown: files of results, words, curves, tables, scenarios."""
+
+from __future__ import annotations
+
+from tests.faults.fault import Fault
+
+FAULTS = [
+    # Paths, distributions, shapes.
+    Fault(
+        "shape that starts at zero",
+        "scenarios/roads.py",
+        "last - first, start=first, **given)",
+        "last - first, **given)",
+    ),
+    # Profiles from files.
+    Fault("rows for columns", "_basics/matlab_file.py", 'reshape(shape, order="F")', "reshape(shape)"),
+    Fault("packed bombs let in", "_basics/matlab_file.py", "most or limit)", "most or 0)"),
+    # What is left out, told apart, cut and refused.
+    Fault("nan that passes", "results/labels.py", "~np.isfinite(values)", "np.isinf(values)"),
+    Fault("curve that hides another", "reports/curves.py", "<= COINCIDENT * np.abs(other)", "<= np.abs(other)"),
+    Fault("roll for a bounce", "reports/curves.py", "units[dof] != units[one] or abs(size", "abs(size"),
+    Fault("wheels before bodies", "reports/curves.py", "key=lambda dof: rms[dof])", "key=lambda dof: -rms[dof])"),
+    Fault("moving FRF up to a truncation", "reports/frf.py", "return min(max(ends), kept)", "return kept"),
+    Fault("table wider than the console", "commands/console.py", "if pieces[-1] and width > left:", "if False:"),
+    Fault("once in 1e46 seconds", "_basics/wording.py", "0 < value < NEVER", "0 < value < 0"),
+    Fault("file without accelerations", "results/files.py", "if not label.optional]", "if label.optional]"),
+]

@@ -1,0 +1,79 @@
+"""Matrices, hinges, rigid contacts, the vehicles that functions fill."""
+
+from __future__ import annotations
+
+from tests.faults.fault import Fault
+
+FAULTS = [
+    # Coupling.
+    Fault("footprint twice as long", "vehicles/contact.py", "half = 0.5 *", "half = 1.0 *"),
+    Fault("cams twice as far apart", "vehicles/contact.py", "0.5 * self.cams", "1.0 * self.cams"),
+    # Vehicle.
+    Fault("gravity", "vehicles/vehicle.py", "GRAVITY = 9.81", "GRAVITY = 9.80665"),
+    Fault("tyre damping missing", "vehicles/dynamics.py", "np.diag(dashpots)", "0.0 * np.diag(dashpots)"),
+    Fault(
+        "inertia sign", "vehicles/dynamics.py", "(self.linear + s * self.square)", "(self.linear - s * self.square)"
+    ),
+    Fault("rigid motion turned", "vehicles/dynamics.py", "free[bound] = -inverse", "free[bound] = inverse"),
+    Fault(
+        "inertia above rigid contacts missing",
+        "vehicles/dynamics.py",
+        ".T + prescribed.T @ a @ prescribed",
+        ".T + 0.0 * prescribed.T @ a @ prescribed",
+    ),
+    Fault(
+        "force on the vehicle for that on the road",
+        "vehicles/dynamics.py",
+        "force -= self.direct",
+        "force += self.direct",
+    ),
+    Fault("weight above rigid contacts missing", "vehicles/vehicle.py", "(self.weights - impedance", "(-impedance"),
+    Fault(
+        "tipping vehicles accepted",
+        "vehicles/vehicle.py",
+        "np.flatnonzero(~(loads > 0))",
+        "np.flatnonzero(loads != loads)",
+    ),
+    Fault(
+        "nose up",
+        "vehicles/assembly.py",
+        "(position - self.position, self.pitch_inertia)",
+        "(self.position - position, self.pitch_inertia)",
+    ),
+    Fault(
+        "right side down",
+        "vehicles/assembly.py",
+        "(across - self.across, self.roll_inertia)",
+        "(self.across - across, self.roll_inertia)",
+    ),
+    Fault(
+        "wheels weightless",
+        "vehicles/assembly.py",
+        "self.downward.add(body.dof_names[0])",
+        "self.downward.update(body.dof_names[:1] if n == 0 else [])",
+    ),
+    Fault("hitch turned", "vehicles/assembly.py", "free[given_up] = -np.linalg", "free[given_up] = np.linalg"),
+    Fault("dampers left out", "vehicles/assembly.py", "suspension.damping * square", "0.0 * square"),
+    Fault("convoy ahead of itself", "vehicles/combined.py", "behind = -np.concatenate", "behind = np.concatenate"),
+    Fault("both seats on the floor", "vehicles/combined.py", "        below = above\n", ""),
+    Fault("half a wheel on each side", "vehicles/trucks.py", "(0.5, sides[1], 1", "(1.0, sides[1], 1"),
+    Fault("Hertz' exponent", "vehicles/rail.py", "1.5 / constant", "1.0 / constant"),
+    Fault("rear bogie ahead", "vehicles/rail.py", '"bogie_2": -0.5 * apart', '"bogie_2": 0.6 * apart'),
+    Fault("contacts transposed", "vehicles/vehicle.py", "ahead[:, None] - ahead", "ahead - ahead[:, None]"),
+    Fault(
+        "left and right transposed", "vehicles/vehicle.py", "across[:, None] - across", "across - across[:, None]"
+    ),
+    Fault(
+        "receiver's place for the source's",
+        "vehicles/vehicle.py",
+        "np.broadcast_to(across, offsets",
+        "np.broadcast_to(across[:, None], offsets",
+    ),
+    Fault("paths exchanged", "vehicles/cars.py", "path=side", "path=1 - side"),
+    Fault(
+        "wheels exchanged across",
+        "vehicles/cars.py",
+        "path=side,\n                across=aside[side]",
+        "path=side,\n                across=aside[1 - side]",
+    ),
+]
