@@ -6,7 +6,13 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 SCENARIO := out/demo.toml
 
-.PHONY: demo paper test bench scale random fuzz accuracy faults lint format clean
+# A test process on every core, each with one thread; what is costly to set up is shared by a group (`xdist_group`).
+# Compiled files are kept even where the environment would rather not: they save a third of the collection.
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+TESTS = PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
+	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadgroup
+
+.PHONY: demo paper test test-slow test-lowest coverage bench scale random fuzz accuracy faults lint format dist picture clean
 
 demo: $(READY)
 	@mkdir -p out
@@ -17,7 +23,18 @@ paper: $(READY)
 	$(BIN)/movingfrf paper --output out/paper
 
 test: $(READY) lint
-	$(BIN)/pytest -q
+	$(TESTS) -m "not slow"
+
+# What `make test` leaves out: single tests of more than 5 s.
+test-slow: $(READY)
+	$(TESTS) -m slow
+
+# All tests with the lowest versions that the package says it works with, in an environment of their own.
+test-lowest:
+	PYTHON=$(PYTHON) JOBS=$(JOBS) tools/lowest.sh
+
+coverage: $(READY)
+	$(TESTS) --cov --cov-report=term:skip-covered
 
 lint: $(READY)
 	$(BIN)/ruff check .
@@ -47,8 +64,19 @@ fuzz: $(READY)
 accuracy: $(READY)
 	$(BIN)/python -m benchmarks.accuracy
 
+# Deliberate faults: all of them, or one part alone (`make faults PART=response`). `make faults PART=?` says what each
+# part covers.
+PART ?=
 faults: $(READY)
-	$(BIN)/python -m tests.faults
+	$(BIN)/python -m tests.faults $(if $(filter ?,$(PART)),--parts,$(addprefix --part ,$(PART)))
+
+# Source distribution and wheel: built, checked, installed into an empty environment and used there.
+dist: $(READY)
+	PYTHON=$(PYTHON) tools/dist.sh
+
+# The picture of the rooms and their arrows, drawn from the imports.
+picture: $(READY)
+	$(BIN)/python docs/images/rooms.py
 
 # An editable install, redone when the dependencies change. The mark is set last: an interrupted
 # installation is taken up again.
@@ -60,4 +88,4 @@ $(READY): pyproject.toml
 	@touch $(READY)
 
 clean:
-	rm -rf $(VENV) out
+	rm -rf $(VENV) .venv-lowest build dist out

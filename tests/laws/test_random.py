@@ -194,7 +194,7 @@ def test_moments_by_another_quadrature():
     for quantity in ("contact_force", "deflection", "motion", "acceleration"):
         delayed = np.einsum("foc,fc->fo", transfer[quantity].values, phase)
         density = np.abs(delayed.T) ** 2 * GROUND.density(frequency / speed) / speed
-        zeroth, second, fourth = (simpson(frequency**power * density, frequency) for power in (0, 2, 4))
+        zeroth, second, fourth = (simpson(frequency**power * density, x=frequency) for power in (0, 2, 4))
         assert found[f"{quantity}_rms"].values == pytest.approx(np.sqrt(zeroth), rel=1e-7)
         assert found[f"{quantity}_crossing_rate"].values == pytest.approx(np.sqrt(second / zeroth), rel=1e-7)
         assert found[f"{quantity}_peak_rate"].values == pytest.approx(np.sqrt(fourth / second), rel=1e-7)

@@ -1,0 +1,79 @@
+"""What 0.1 wrote still opens: results, and the scenarios that they were computed from, which still say the same.
+
+`tests/data/written_by_0_1` was written by `movingfrf run`, `random` and `measure` of that version from the two
+scenarios beside it.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import movingfrf as mf
+from movingfrf.commands.main import main
+from movingfrf.metrics.measures import random_measures
+from movingfrf.reports.result import render
+from movingfrf.results.files import load
+
+WRITTEN = Path(__file__).parent / "data" / "written_by_0_1"
+
+# The exponential window raises rounding by up to 3e4, other processors round differently.
+ROUNDING = 1e-9
+
+
+def relative(found, wanted) -> float:
+    return float(np.linalg.norm(found - wanted) / (np.linalg.norm(wanted) or 1.0))
+
+
+@pytest.mark.parametrize("name", ["truck", "loads"])
+def test_a_scenario_says_what_it_said(name):
+    scenario = mf.read_scenario(WRITTEN / f"{name}.toml")
+    earlier = load(WRITTEN / f"{name}.nc")
+    assert scenario.text == earlier.attrs["scenario"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mf.ValidityWarning)
+        now = scenario.run()
+    assert set(now.variables) == set(earlier.variables)
+    for variable in now.variables:
+        if now[variable].dtype.kind == "f":
+            assert relative(now[variable].values, earlier[variable].values) < ROUNDING, variable
+        else:
+            assert (now[variable].values == earlier[variable].values).all(), variable
+    numbers = {key for key, value in earlier.attrs.items() if isinstance(value, float)}
+    assert set(now.attrs) == set(earlier.attrs)
+    assert all(now.attrs[key] == pytest.approx(earlier.attrs[key], rel=1e-6) for key in numbers)
+    codes = [[one["code"] for one in json.loads(result.attrs["findings"])] for result in (now, earlier)]
+    assert codes[0] == codes[1]
+
+
+@pytest.mark.parametrize("name", ["truck", "loads"])
+def test_a_result_becomes_a_page(name):
+    scenario = mf.read_scenario(WRITTEN / f"{name}.toml")
+    page = render(load(WRITTEN / f"{name}.nc"), guideway=scenario.guideway, title=name)
+    assert "movingfrf 0.1.0" in page
+    assert "<svg" in page
+
+
+def test_a_result_is_measured_as_it_was(tmp_path, capsys):
+    assert main(["measure", str(WRITTEN / "truck.nc"), "--output", str(tmp_path / "now.csv")]) == 0
+    now, earlier = (
+        list(csv.reader(file.read_text(encoding="utf-8").splitlines()))
+        for file in (tmp_path / "now.csv", WRITTEN / "truck.csv")
+    )
+    assert [row[:2] + row[3:] for row in now] == [row[:2] + row[3:] for row in earlier]
+    for mine, theirs in zip(now[1:], earlier[1:], strict=True):
+        assert float(mine[2]) == pytest.approx(float(theirs[2]), rel=ROUNDING, nan_ok=True), mine[:2]
+
+
+def test_the_response_to_a_random_road_opens():
+    result = xr.load_dataset(WRITTEN / "random.nc", engine="h5netcdf")
+    found = {(one.quantity, one.name): one.value for one in random_measures(result)}
+    assert found["contact 0 load", "dynamic load coefficient"] == result.dynamic_load_coefficient.values[0]
+    with pytest.raises(ValueError, match=r"random\.nc: holds the response to a random road"):
+        load(WRITTEN / "random.nc")
