@@ -211,7 +211,7 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk") -> Flo
         check_weighting(check, name)
         check.positive("time_step", time_step, "s")
         values, shape = _histories(check, "acceleration", acceleration, "m/s²")
-    # What is left of a weighting's memory at the end of the padding [TRY].
+    # What is left of a weighting's memory at the end of the padding [1e-15 to 1e-7].
     forgotten = 1e-9
     # The slowest pole is that of the Butterworth high-pass: ω₁/√2.
     memory = -np.log(forgotten) * np.sqrt(2) / (2 * np.pi * WEIGHTINGS[name].band[0])

@@ -259,7 +259,7 @@ def spectral_damage(
         life = np.float64(getattr(flife, METHODS[method])(process).get_life(C=1.0, k=slope))
         share = np.exp(-narrow) / life
     # By how much a method may exceed the narrow band's damage, which bounds that of every Gaussian process:
-    # rounding [TRY].
+    # rounding [1e-12 to 1e-6].
     rounding = 1e-6
     if not 0 < share <= 1 + rounding:
         raise ValueError(

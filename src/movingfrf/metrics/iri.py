@@ -21,7 +21,8 @@ class Procedure:
     average: float = 0.25  # length over which a tyre and the standards average a profile [m]
     start: float = 11.0  # length of the profile whose slope the car has at its start: half a second [m]
     longest_step: float = 0.3 * (1 + 1e-6)  # the standards' between stations [m], and the rounding of a file's
-    # How far a station may lie from an even grid, as a share of the step: the rounding of a file's stations [TRY].
+    # How far a station may lie from an even grid, as a share of the step: the rounding of a file's stations, 0.01
+    # for whole millimetres at steps of 50; a tenth moves the index by up to 0.3 % [0.01 to 0.1].
     uneven: float = 0.02
 
 

@@ -25,9 +25,10 @@ RESOLUTIONS = (1e-2, 1e-3, 5e-4, 2.5e-4, 1e-4, 1e-5, 1e-6)
 class Pieces:
     """Half-overlapping pieces of a profile for Welch's method; in brackets, between what each number is safe."""
 
-    fewest: int = 8  # [TRY]
+    # As many as `welch` takes [a convention: with 6 or 12 a road near the limit of a class changes over].
+    fewest: int = 8
     # Length of the longest one [m]. Three lines of its spectrum make the lowest wave, so that the longest wave that
-    # ISO 8608 fits, 91 m, is within reach [TRY].
+    # ISO 8608 fits, 91 m, is within reach [280 to 1000].
     longest: float = 400.0
 
 
@@ -344,7 +345,7 @@ def _coherence(estimated: Spectra) -> tuple[FloatArray, FloatArray] | None:
 
 def _resolution(elevation: FloatArray) -> float:
     """Find what all elevations are a multiple of [m]; 0 if nothing that is usual."""
-    # So many stations are looked at [TRY].
+    # So many stations are looked at [1000 and more].
     elevation = elevation[:20_000]
     for resolution in RESOLUTIONS:
         counts = (elevation - elevation[0]) / resolution
