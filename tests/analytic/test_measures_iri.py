@@ -13,8 +13,9 @@ from scipy.linalg import expm
 from scipy.signal import StateSpace, lsim
 
 import movingfrf as mf
-from movingfrf.metrics.iri import GOLDEN_CAR, RIDE_NUMBER_CAR, SPEED, suspension_slope
+from movingfrf.metrics.iri import GOLDEN_CAR, PROCEDURE, RIDE_NUMBER_CAR, suspension_slope
 
+SPEED = PROCEDURE.speed
 DATA = Path(__file__).parents[3] / "shared" / "data"
 on_real_roads = pytest.mark.skipif(not DATA.exists(), reason=f"the measured roads of {DATA} are not there")
 

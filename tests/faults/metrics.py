@@ -89,13 +89,15 @@ FAULTS = [
         "np.abs(kappa.imag).min(axis=0)",
         "np.abs(kappa.imag).max(axis=0)",
     ),
-    Fault("damage beyond a Gaussian process", "metrics/fatigue.py", "if not 0 < share <= 1 + BOUND:", "if False:"),
+    Fault(
+        "damage beyond a Gaussian process", "metrics/fatigue.py", "if not 0 < share <= 1 + rounding:", "if False:"
+    ),
     Fault("damage of a negative life", "metrics/fatigue.py", "if not 0 < share <= 1", "if not share <= 1"),
     Fault("load that hangs divides", "metrics/loads.py", "where=load > 0)", "where=load != 0)"),
     Fault("load that hangs wears", "metrics/loads.py", "max(static[contact], 0.0)", "static[contact]"),
-    Fault("points beyond memory", "metrics/loads.py", "(last - first) / spacing * (BYTES", "0 * (BYTES"),
+    Fault("points beyond memory", "metrics/loads.py", "(last - first) / spacing * (bytes", "0 * (bytes"),
     Fault("window longer than the road", "metrics/iri.py", "elif shortest > length:", "elif False:"),
-    Fault("feet felt like the seat", "metrics/comfort.py", "[SEATED[name] for name in rms]", "1.0"),
+    Fault("feet felt like the seat", "metrics/comfort.py", "[ISO_2631.seated[name] for name in rms]", "1.0"),
     Fault(
         "histories mixed",
         "metrics/comfort.py",
@@ -106,8 +108,13 @@ FAULTS = [
     Fault("trend left in the spectrum", "metrics/profile.py", "piece -= np.outer", "_ = np.outer"),
     Fault("coherence of amplitudes", "metrics/profile.py", "(real**2 + imaginary**2)", "np.hypot(real, imaginary)"),
     Fault("edges counted with spikes", "metrics/profile.py", "np.flatnonzero(peak & (bend", "np.flatnonzero((bend"),
-    Fault("millimetres pass for metres", "metrics/profile.py", '(2 * CLASS_CENTRES["G"], 200.0)', "(1e9, 1e9)"),
-    Fault("one level stretch of many", "metrics/profile.py", "[:MOST_STRETCHES]", "[:1]"),
+    Fault(
+        "millimetres pass for metres",
+        "metrics/profile.py",
+        "if path.fit.roughness_at_two > ODDITIES.density or path.index > ODDITIES.index:",
+        "if path.fit.roughness_at_two > 1e9 or path.index > 1e9:",
+    ),
+    Fault("one level stretch of many", "metrics/profile.py", "[: ODDITIES.most_stretches]", "[:1]"),
     # What is left out, told apart, cut and refused.
     Fault(
         "vehicle that never runs in",

@@ -16,9 +16,6 @@ NumberArray = NDArray[np.inexact[Any]]
 IntArray = NDArray[np.integer[Any]]
 BoolArray = NDArray[np.bool_]
 
-# The share of the free memory that one computation may plan to take.
-MEMORY_SHARE = 0.8
-
 
 def finite(value: Any) -> Any:
     """Replace numbers that are not finite by None, in dicts and lists too: JSON knows no infinity."""
@@ -44,8 +41,10 @@ def require_memory(needed: float, what: str) -> None:
     ValueError
         If `needed` exceeds four fifths of the free memory.
     """
+    # The share of the free memory that one computation may plan to take [a convention].
+    share = 0.8
     available = psutil.virtual_memory().available
-    if needed > MEMORY_SHARE * available:
+    if needed > share * available:
         raise ValueError(
             f"{what} needs about {needed / 2**30:.3g} GiB of memory, but only {available / 2**30:.3g} GiB are free"
         )

@@ -6,6 +6,7 @@ import difflib
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from numbers import Real
 from typing import Any, NamedTuple, TypeVar
 
@@ -16,8 +17,16 @@ from movingfrf._basics.arrays import FloatArray
 
 Kind = TypeVar("Kind")
 
-# Physical quantities in SI units lie far inside these bounds; beyond them powers overflow.
-SMALLEST, LARGEST = 1e-20, 1e20
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Magnitudes:
+    """Bounds far inside which physical quantities in SI units lie; beyond them powers overflow [a convention]."""
+
+    smallest: float = 1e-20
+    largest: float = 1e20
+
+
+CREDIBLE = Magnitudes()
 
 
 class Fault(NamedTuple):
@@ -104,9 +113,10 @@ class Checks:
             number = float("inf")
         if not np.isfinite(number):
             self.refuse(name, f"must be {condition}, got {with_unit(number, unit)}")
-        elif abs(number) > LARGEST:
+        elif abs(number) > CREDIBLE.largest:
             self.refuse(
-                name, f"must be of a credible magnitude, at most {LARGEST:g}, got {with_unit(number, unit)}"
+                name,
+                f"must be of a credible magnitude, at most {CREDIBLE.largest:g}, got {with_unit(number, unit)}",
             )
         else:
             return number
@@ -117,9 +127,10 @@ class Checks:
         number = self.finite(name, value, unit, "a positive number")
         if number <= 0:
             self.refuse(name, f"must be positive, got {with_unit(number, unit)}")
-        elif number < SMALLEST:
+        elif number < CREDIBLE.smallest:
             self.refuse(
-                name, f"must be of a credible magnitude, at least {SMALLEST:g}, got {with_unit(number, unit)}"
+                name,
+                f"must be of a credible magnitude, at least {CREDIBLE.smallest:g}, got {with_unit(number, unit)}",
             )
         return number
 
@@ -165,13 +176,13 @@ class Checks:
         if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
             self.refuse(name, f"must have shape {wanted}, got {array.shape}")
             return np.full([n or 1 for n in shape], np.nan)
-        bad = np.argwhere(~(np.abs(array) <= LARGEST))
+        bad = np.argwhere(~(np.abs(array) <= CREDIBLE.largest))
         if bad.size:
             place = tuple(int(i) for i in bad[0])
             self.refuse(
                 name,
-                f"must be finite and at most {with_unit(LARGEST, unit)} throughout, got {float(array[place])!r} "
-                f"at index {place[0] if len(place) == 1 else place}",
+                f"must be finite and at most {with_unit(CREDIBLE.largest, unit)} throughout, got "
+                f"{float(array[place])!r} at index {place[0] if len(place) == 1 else place}",
             )
         array.flags.writeable = False
         return array

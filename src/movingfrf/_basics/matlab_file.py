@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
@@ -12,23 +13,55 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 
-# What a file may unpack to: so many times its own size, or this many bytes if that is more. A damaged count or a
-# packed bomb claims more.
-UNPACKED, UNPACKED_LEAST = 10, 2**27
 
-# The level 5 format: a header of text that ends in version and byte order, then elements of type, size and data.
-HEADER = 128
-MATRIX, COMPRESSED = 14, 15
-NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
-# Classes of arrays that hold numbers: double, single, and whole numbers of all sizes.
-NUMERIC = range(6, 16)
-COMPLEX = 0x0800
-# Cells and characters.
-CELL, TEXT = 1, 4
-ORDERS = {"<": "le", ">": "be"}
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unpacking:
+    """How much of a file is unpacked; in brackets, between what each number is safe."""
 
-# Enough of an array to tell its name and size.
-BEGINNING = 1024
+    # What a file may unpack to: so many times its own size, or this many bytes if that is more. A damaged count or
+    # a packed bomb claims more [a convention].
+    times: int = 10
+    least: int = 2**27
+    # Bytes that tell an array's name and size: 112 of a matrix whose name has 63 letters, the most [128 and more].
+    beginning: int = 1024
+
+    def most(self, size: int) -> int:
+        """Bytes that a file of this size may unpack to."""
+        return max(self.times * size, self.least)
+
+
+UNPACKING = Unpacking()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Level5:
+    """Numbers of the level 5 format: a header of text that ends in version and byte order, then elements.
+
+    An element has type, size and data.
+    """
+
+    header: int  # bytes
+    # Types of elements.
+    matrix: int
+    compressed: int
+    numbers: Mapping[int, str]  # how numpy calls them
+    # Classes of arrays; numeric ones are double, single, and whole numbers of all sizes.
+    numeric: range
+    cell: int
+    text: int
+    complex_flag: int  # beside the class
+
+
+LEVEL_5 = Level5(
+    header=128,
+    matrix=14,
+    compressed=15,
+    numbers={1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"},
+    numeric=range(6, 16),
+    cell=1,
+    text=4,
+    complex_flag=0x0800,
+)
 
 
 class Element(NamedTuple):
@@ -53,7 +86,7 @@ class Contents(NamedTuple):
     texts: dict[str, Callable[[], list[str]]]
 
 
-def contents(data: bytes) -> Contents:
+def arrays_and_texts(data: bytes) -> Contents:
     """Take apart a MATLAB file of version 5 (up to 7.2).
 
     Parameters
@@ -76,23 +109,22 @@ def contents(data: bytes) -> Contents:
         raise ValueError("is no MATLAB file of version 5 or 7.3; save it anew with -v7 or -v7.3")
     numbers: dict[str, Stored] = {}
     texts: dict[str, Callable[[], list[str]]] = {}
-    for element in _elements(memoryview(data)[HEADER:], order):
+    for element in _elements(memoryview(data)[LEVEL_5.header :], order):
         read_all = partial(_unpacked, element, len(data))
-        beginning = _unpacked(element, len(data), BEGINNING) if element.kind == COMPRESSED else element.data
-        kind = element.kind
-        if kind == COMPRESSED:
+        kind, packed = element.kind, element.kind == LEVEL_5.compressed
+        beginning = _unpacked(element, len(data), UNPACKING.beginning) if packed else element.data
+        if packed:
             kind, beginning, _ = next(_elements(memoryview(beginning), order, partly=True), Element(0, b"", 0))
-        if kind != MATRIX:
+        if kind != LEVEL_5.matrix:
             continue
         parts = list(_elements(memoryview(beginning), order, partly=True, most=3))
         if len(parts) == 3 and len(parts[0].data) >= 4:
             (flags,) = struct.unpack(f"{order}I", parts[0].data[:4])
             name = bytes(parts[2].data).decode("latin-1")
-            packed = element.kind == COMPRESSED
-            if flags & 0xFF in NUMERIC and not flags & COMPLEX and len(parts[1].data) % 4 == 0:
+            if flags & 0xFF in LEVEL_5.numeric and not flags & LEVEL_5.complex_flag and len(parts[1].data) % 4 == 0:
                 shape = tuple(np.frombuffer(parts[1].data, f"{order}i4").tolist())
                 numbers[name] = Stored(shape, partial(_numbers, read_all, packed, shape, order, name))
-            elif flags & 0xFF in (CELL, TEXT):
+            elif flags & 0xFF in (LEVEL_5.cell, LEVEL_5.text):
                 texts[name] = partial(_texts, read_all, packed, order, flags & 0xFF)
     return Contents(numbers, texts)
 
@@ -103,16 +135,15 @@ def _texts(read_all: Callable[[], bytes], packed: bool, order: str, kind: int) -
     if packed:
         data = memoryview(next(_elements(data, order)).data)
     parts = list(_elements(data, order))[3:]
-    if kind == TEXT:
+    if kind == LEVEL_5.text:
         return [_decoded(part, order) for part in parts[:1]]
-    cells = [list(_elements(memoryview(part.data), order)) for part in parts if part.kind == MATRIX]
+    cells = [list(_elements(memoryview(part.data), order)) for part in parts if part.kind == LEVEL_5.matrix]
     return [_decoded(cell[3], order) for cell in cells if len(cell) > 3]
 
 
 def _decoded(part: Element, order: str) -> str:
-    encoding = {2: "latin-1", 16: "utf-8", 4: f"utf-16-{ORDERS[order]}", 17: f"utf-16-{ORDERS[order]}"}.get(
-        part.kind
-    )
+    utf_16 = {"<": "utf-16-le", ">": "utf-16-be"}[order]
+    encoding = {2: "latin-1", 16: "utf-8", 4: utf_16, 17: utf_16}.get(part.kind)
     if encoding is None:
         raise ValueError(f"is damaged: a text is stored as type {part.kind}")
     return bytes(part.data).decode(encoding, "replace").strip()
@@ -130,7 +161,7 @@ def _elements(data: memoryview, order: str, *, partly: bool = False, most: int =
         else:
             start = at + 8
             # Packed elements follow each other without a gap, all others at multiples of 8 bytes.
-            end = start + (size if kind == COMPRESSED else -(-size // 8) * 8)
+            end = start + (size if kind == LEVEL_5.compressed else -(-size // 8) * 8)
         if start + size > len(data) and not partly:
             raise ValueError(f"is damaged: an element claims {size} bytes, but {len(data) - start} are left")
         yield Element(kind, data[start : start + size], size)  # type: ignore[arg-type]
@@ -139,16 +170,16 @@ def _elements(data: memoryview, order: str, *, partly: bool = False, most: int =
 
 def _unpacked(element: Element, file_size: int, most: int = 0) -> bytes:
     """Unpack an element, all of it or its beginning, but no more than a file of this size can hold in earnest."""
-    if element.kind != COMPRESSED:
+    if element.kind != LEVEL_5.compressed:
         return element.data
-    limit = max(UNPACKED * file_size, UNPACKED_LEAST)
+    limit = UNPACKING.most(file_size)
     packed = zlib.decompressobj()
     try:
         data = packed.decompress(element.data, most or limit)
     except zlib.error as error:
         raise ValueError(f"is damaged: {error}") from None
     if not most and packed.unconsumed_tail:
-        raise ValueError(f"unpacks to more than {UNPACKED} times its size: unpack it elsewhere first")
+        raise ValueError(f"unpacks to more than {UNPACKING.times} times its size: unpack it elsewhere first")
     return data
 
 
@@ -160,9 +191,9 @@ def _numbers(
         data = memoryview(next(_elements(data, order)).data)
     parts = list(_elements(data, order, most=4))
     kind = parts[3].kind if len(parts) == 4 else 0
-    if kind not in NUMBERS:
+    if kind not in LEVEL_5.numbers:
         raise ValueError(f"is damaged: the array {name!r} has no numbers")
-    stored = np.dtype(f"{order}{NUMBERS[kind]}")
+    stored = np.dtype(f"{order}{LEVEL_5.numbers[kind]}")
     if len(shape) < 2 or min(shape) < 0 or int(np.prod(shape, dtype=object)) * stored.itemsize != parts[3].size:
         raise ValueError(f"is damaged: the array {name!r} of shape {shape} has {parts[3].size} bytes")
     return np.frombuffer(parts[3].data, stored).astype(float).reshape(shape, order="F")

@@ -6,10 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-# Numbers of paths that are written out.
-MOST_PATHS = 6
-
-# A rate [1/s] or a share below this stands for never.
+# A rate [1/s] or a share below this stands for never [a convention].
 NEVER = 1e-12
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -65,13 +62,13 @@ def count(number: int, singular: str, plural: str = "") -> str:
     return f"{number} {singular if number == 1 else plural or singular + 's'}"
 
 
-def paths(numbers: Sequence[int]) -> str:
-    """Name some paths by their numbers: path 0, paths 0 and 2, paths 0, 1, 2, 3 and 11 more."""
+def named_paths(numbers: Sequence[int], most: int = 6) -> str:
+    """Name some paths by their numbers, `most` at most: path 0, paths 0 and 2, paths 0, 1, 2, 3 and 11 more."""
     words = [str(number) for number in numbers]
     if len(words) == 1:
         return f"path {words[0]}"
-    if len(words) > MOST_PATHS:
-        words = [*words[: MOST_PATHS - 1], f"{len(words) - MOST_PATHS + 1} more"]
+    if len(words) > most:
+        words = [*words[: most - 1], f"{len(words) - most + 1} more"]
     *first, last = words
     return f"paths {', '.join(first)} and {last}"
 

@@ -131,7 +131,7 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
 
         from movingfrf.metrics.measures import measures
         from movingfrf.reports.result import render
-        from movingfrf.results.files import replacing, save, summary
+        from movingfrf.results.files import replacing, save, summary_as_json
         from movingfrf.scenarios.reading import read_scenario
 
         stages.report("scenario", 0.0)
@@ -145,7 +145,7 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
             found = measures(result)
             stages.report("result.nc", 0.0)
             save(result, temporary / "result.nc")
-            (temporary / "summary.json").write_text(summary(result, found), encoding="utf-8")
+            (temporary / "summary.json").write_text(summary_as_json(result, found), encoding="utf-8")
             stages.report("report.html", 0.0)
             page = render(result, guideway=scenario.guideway, scenario_text=scenario.text, title=scenario.name)
             (temporary / "report.html").write_text(page, encoding="utf-8")
@@ -189,7 +189,7 @@ def random(
         from movingfrf.metrics.measures import random_measures
         from movingfrf.reports.random import drawing_frequencies, paths, render
         from movingfrf.response.random import random_response
-        from movingfrf.results.files import replacing, save, summary
+        from movingfrf.results.files import replacing, save, summary_as_json
         from movingfrf.scenarios.reading import read_scenario
 
         scenario = read_scenario(file)
@@ -220,7 +220,7 @@ def random(
             drawn = response(frequency=drawing_frequencies(result))
             found = random_measures(result, slope=slope)
             save(result, temporary / "random.nc")
-            (temporary / "summary.json").write_text(summary(result, found), encoding="utf-8")
+            (temporary / "summary.json").write_text(summary_as_json(result, found), encoding="utf-8")
             stages.report("report.html", 0.0)
             title = f"{scenario.name}: random road"
             page = render(result, found, title=title, scenario=scenario.text, drawn=drawn)
@@ -267,7 +267,7 @@ def measure(
         A file to write the measures to as well: .json or .csv.
     """
     from movingfrf.metrics.measures import assess
-    from movingfrf.results.files import load, measures_as_csv, summary
+    from movingfrf.results.files import load, measures_as_csv, summary_as_json
 
     if output is not None and output.suffix not in (".json", ".csv"):
         raise ValueError(f"{output}: must end in .json or .csv")
@@ -294,7 +294,7 @@ def measure(
         text = (
             measures_as_csv(found)
             if output.suffix == ".csv"
-            else summary(result.assign_attrs(measured_from=since), found)
+            else summary_as_json(result.assign_attrs(measured_from=since), found)
         )
         output.write_text(text, encoding="utf-8")
         console.print(f"wrote {output}", soft_wrap=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -16,40 +17,48 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Limits beyond which the rms alone understates a vibration (ISO 2631-1, 6.2.1 and 6.3.3).
-CREST_LIMIT, MTVV_LIMIT, VDV_LIMIT = 9.0, 1.5, 1.75
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Standard:
+    """How ISO 2631-1 judges a weighted vibration: standardised, no tuning."""
 
-# Time over which the running rms is taken [s] (ISO 2631-1, 6.3.1).
-RUNNING = 1.0
+    # Limits beyond which the rms alone understates a vibration (6.2.1 and 6.3.3).
+    crest_limit: float  # peak over rms
+    mtvv_limit: float  # MTVV over rms
+    vdv_limit: float  # VDV over rms times the fourth root of the duration
+    running: float  # time over which the running rms is taken [s] (6.3.1)
+    # Frequency-weighted rms acceleration [m/s²] from and up to which people react so (C.2.3); they overlap.
+    reactions: tuple[tuple[str, float, float], ...]
+    seated: Mapping[str, float]  # multiplying factors of a seated person's axes for comfort (8.2.2.1)
 
-# What is left of a weighting's memory at the end of the padding.
-FORGOTTEN = 1e-9
 
-# Frequency-weighted rms acceleration [m/s²] from and up to which people react so (ISO 2631-1, C.2.3); they overlap.
-REACTIONS = (
-    ("not uncomfortable", 0.0, 0.315),
-    ("a little uncomfortable", 0.315, 0.63),
-    ("fairly uncomfortable", 0.5, 1.0),
-    ("uncomfortable", 0.8, 1.6),
-    ("very uncomfortable", 1.25, 2.5),
-    ("extremely uncomfortable", 2.0, np.inf),
+ISO_2631 = Standard(
+    crest_limit=9.0,
+    mtvv_limit=1.5,
+    vdv_limit=1.75,
+    running=1.0,
+    reactions=(
+        ("not uncomfortable", 0.0, 0.315),
+        ("a little uncomfortable", 0.315, 0.63),
+        ("fairly uncomfortable", 0.5, 1.0),
+        ("uncomfortable", 0.8, 1.6),
+        ("very uncomfortable", 1.25, 2.5),
+        ("extremely uncomfortable", 2.0, np.inf),
+    ),
+    seated={
+        "seat x": 1.0,
+        "seat y": 1.0,
+        "seat z": 1.0,
+        "seat roll": 0.63,
+        "seat pitch": 0.4,
+        "seat yaw": 0.2,
+        "backrest x": 0.8,
+        "backrest y": 0.5,
+        "backrest z": 0.4,
+        "feet x": 0.25,
+        "feet y": 0.25,
+        "feet z": 0.4,
+    },
 )
-
-# Multiplying factors of a seated person's axes for comfort (ISO 2631-1, 8.2.2.1).
-SEATED = {
-    "seat x": 1.0,
-    "seat y": 1.0,
-    "seat z": 1.0,
-    "seat roll": 0.63,
-    "seat pitch": 0.4,
-    "seat yaw": 0.2,
-    "backrest x": 0.8,
-    "backrest y": 0.5,
-    "backrest z": 0.4,
-    "feet x": 0.25,
-    "feet y": 0.25,
-    "feet z": 0.4,
-}
 
 # Weighting of ISO 2631-1 by the unit of a degree of freedom: vertical vibration of a seat or floor, and rotation.
 WEIGHTING_OF = {"m": "Wk", "rad": "We"}
@@ -98,9 +107,9 @@ class Comfort(NamedTuple):
         if not self.rms:
             return ()
         ratios = {
-            "crest": self.crest_factor / CREST_LIMIT,
-            "MTVV": self.mtvv / self.rms / MTVV_LIMIT,
-            "VDV": self.vdv / (self.rms * self.duration**0.25) / VDV_LIMIT,
+            "crest": self.crest_factor / ISO_2631.crest_limit,
+            "MTVV": self.mtvv / self.rms / ISO_2631.mtvv_limit,
+            "VDV": self.vdv / (self.rms * self.duration**0.25) / ISO_2631.vdv_limit,
         }
         return tuple(name for name, ratio in ratios.items() if ratio > 1)
 
@@ -202,15 +211,17 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk") -> Flo
         check_weighting(check, name)
         check.positive("time_step", time_step, "s")
         values, shape = _histories(check, "acceleration", acceleration, "m/s²")
+    # What is left of a weighting's memory at the end of the padding [1e-15 to 1e-7].
+    forgotten = 1e-9
     # The slowest pole is that of the Butterworth high-pass: ω₁/√2.
-    memory = -np.log(FORGOTTEN) * np.sqrt(2) / (2 * np.pi * WEIGHTINGS[name].band[0])
+    memory = -np.log(forgotten) * np.sqrt(2) / (2 * np.pi * WEIGHTINGS[name].band[0])
     padded = scipy.fft.next_fast_len(len(values) + int(np.ceil(memory / time_step)), real=True)
     factor = weighting(name, scipy.fft.rfftfreq(padded, time_step))
     spectra = scipy.fft.rfft(values, padded, axis=0)
     return scipy.fft.irfft(spectra * factor[:, None], padded, axis=0)[: len(values)].reshape(shape)
 
 
-def running_rms(values: ArrayLike, time_step: float, window: float = RUNNING) -> FloatArray:
+def running_rms(values: ArrayLike, time_step: float, window: float = ISO_2631.running) -> FloatArray:
     """Root mean square over the time just past; before the record there was nothing.
 
     Parameters
@@ -442,7 +453,7 @@ def comfort_reactions(rms: float) -> tuple[str, ...]:
     """
     with checking() as check:
         check.not_negative("rms", rms, "m/s²")
-    return tuple(name for name, least, most in REACTIONS if least <= rms < most)
+    return tuple(name for name, least, most in ISO_2631.reactions if least <= rms < most)
 
 
 def vibration_total(rms: ArrayLike, factors: ArrayLike = 1.0) -> float:
@@ -517,10 +528,10 @@ def seated_total(rms: Mapping[str, float]) -> float:
                 "rms", f"must give accelerations by place and axis, as {{'seat z': 0.5}}, got {shown(rms)}"
             )
         for name, value in given:
-            if name not in SEATED:
-                check.refuse("rms", f"must be of {', '.join(SEATED)}, got {shown(name)}")
+            if name not in ISO_2631.seated:
+                check.refuse("rms", f"must be of {', '.join(ISO_2631.seated)}, got {shown(name)}")
             check.not_negative(f"rms[{name!r}]", value, "m/s²")
-    return vibration_total(list(rms.values()), [SEATED[name] for name in rms])
+    return vibration_total(list(rms.values()), [ISO_2631.seated[name] for name in rms])
 
 
 def _second_order(p: ComplexArray, frequency: float, quality: float = np.sqrt(0.5)) -> ComplexArray:

@@ -28,12 +28,6 @@ METHODS = {
     "single_moment": "SingleMoment",
 }
 
-# Powers of a force beyond this leave the range of numbers; S-N curves are far flatter.
-STEEPEST = 50.0
-
-# By how much a method may exceed the narrow band's damage, which bounds that of every Gaussian process: rounding.
-BOUND = 1e-6
-
 
 def level_crossings(values: ArrayLike, levels: ArrayLike) -> IntArray:
     """Count how often a history rises through each level.
@@ -264,7 +258,10 @@ def spectral_damage(
     with np.errstate(all="ignore"):
         life = np.float64(getattr(flife, METHODS[method])(process).get_life(C=1.0, k=slope))
         share = np.exp(-narrow) / life
-    if not 0 < share <= 1 + BOUND:
+    # By how much a method may exceed the narrow band's damage, which bounds that of every Gaussian process:
+    # rounding [1e-12 to 1e-6].
+    rounding = 1e-6
+    if not 0 < share <= 1 + rounding:
         raise ValueError(
             f"method {method!r} does not hold for this density, whose irregularity is "
             f"{second / np.sqrt(fourth):.3g}: it gives {share:.3g} times the damage of a narrow band with the same "
@@ -287,9 +284,11 @@ def _turning_points(history: FloatArray) -> FloatArray:
 
 
 def _check_curve(slope: float, strength: float) -> None:
+    # Powers of a force beyond this leave the range of numbers; S-N curves are far flatter [a convention].
+    steepest = 50.0
     with checking() as check:
-        if check.positive("slope", slope, "1") > STEEPEST:
-            check.refuse("slope", f"must be at most {STEEPEST:g}, got {slope!r}")
+        if check.positive("slope", slope, "1") > steepest:
+            check.refuse("slope", f"must be at most {steepest:g}, got {slope!r}")
         # A power of a force leaves the magnitudes of physical quantities.
         if not (isinstance(strength, Real) and 0 < strength < float("inf")):
             check.refuse("strength", f"must be positive, got {shown(strength)} unit^m")

@@ -17,11 +17,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Points of a decay-rate measurement in sleeper spacings, and the spacing without sleepers [m] (EN 15461).
+# Points of a decay-rate measurement in sleeper spacings (EN 15461).
 BAYS = np.array(
     [*np.arange(0, 2.75, 0.25), 3, 3.5, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24, 30, 36, 42, 48, 54, 66], float
 )
-SPACING = 0.6
 
 # Decibels of a ratio of amplitudes of e.
 NEPER = 20 / np.log(10)
@@ -181,7 +180,7 @@ def decay_rate(response: ArrayLike, distance: ArrayLike) -> FloatArray:
     return NEPER / 2 / np.sum((size / size[..., :1]) ** 2 * stands_for, axis=-1)
 
 
-def track_decay_rate(guideway: Guideway, frequency: ArrayLike, *, spacing: float = SPACING) -> FloatArray:
+def track_decay_rate(guideway: Guideway, frequency: ArrayLike, *, spacing: float = 0.6) -> FloatArray:
     """Decay rate of a guideway at rest, from its mobilities at the 29 points of EN 15461.
 
     Parameters
@@ -191,7 +190,7 @@ def track_decay_rate(guideway: Guideway, frequency: ArrayLike, *, spacing: float
     frequency : array_like, shape (frequency,)
         Frequency [Hz], positive.
     spacing : float
-        Sleeper spacing by which the points are laid out [m].
+        Sleeper spacing by which the points are laid out [m]; by default what the standard takes without sleepers.
 
     Returns
     -------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -11,20 +12,21 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf.roughness.profile import Profile
 
-# Speed at which both indices are defined [m/s].
-SPEED = 80 / 3.6
 
-# Length over which a tyre and the standards average a profile [m].
-AVERAGE = 0.25
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Procedure:
+    """How a car is driven over a profile by ASTM E1926 and E1489; standardised but for `uneven`."""
 
-# Length of the profile whose slope the car has at its start: half a second at 80 km/h [m].
-RUN_IN = 11.0
+    speed: float = 80 / 3.6  # at which both indices are defined [m/s]
+    average: float = 0.25  # length over which a tyre and the standards average a profile [m]
+    start: float = 11.0  # length of the profile whose slope the car has at its start: half a second [m]
+    longest_step: float = 0.3 * (1 + 1e-6)  # the standards' between stations [m], and the rounding of a file's
+    # How far a station may lie from an even grid, as a share of the step: the rounding of a file's stations, 0.01
+    # for whole millimetres at steps of 50; a tenth moves the index by up to 0.3 % [0.01 to 0.1].
+    uneven: float = 0.02
 
-# The standards' longest step between stations [m], and the rounding of a file's.
-LONGEST_STEP = 0.3 * (1 + 1e-6)
 
-# How far a station may lie from an even grid, as a share of the step: the rounding of a file's stations.
-UNEVEN = 0.02
+PROCEDURE = Procedure()
 
 
 class ReferenceCar(NamedTuple):
@@ -52,7 +54,7 @@ GOLDEN_CAR = ReferenceCar(tyre=653.0, suspension=63.3, damping=6.0, unsprung=0.1
 RIDE_NUMBER_CAR = ReferenceCar(tyre=5120.0, suspension=390.0, damping=17.0, unsprung=0.036)
 
 
-def iri(profile: Profile, *, segment: float | None = None, average: float = AVERAGE) -> FloatArray:
+def iri(profile: Profile, *, segment: float | None = None, average: float = PROCEDURE.average) -> FloatArray:
     """Compute the international roughness index of a profile.
 
     The mean rectified speed of the suspension of the golden car, over its speed of 80 km/h, at the n stations:
@@ -104,7 +106,9 @@ def iri(profile: Profile, *, segment: float | None = None, average: float = AVER
     return 1e3 * _segments(profile, GOLDEN_CAR, segment, average, np.abs)
 
 
-def ride_number(profile: Profile, *, segment: float | None = None, average: float = AVERAGE) -> FloatArray:
+def ride_number(
+    profile: Profile, *, segment: float | None = None, average: float = PROCEDURE.average
+) -> FloatArray:
     """Compute the ride number of a profile: how passengers rate the ride, from 0 (impassable) to 5 (perfect).
 
     From the root mean square PI of (ż_s − ż_u)/V, of a quarter car at 80 km/h that is much stiffer than the golden
@@ -156,17 +160,17 @@ def _segments(
     measure: Callable[[FloatArray], FloatArray],
 ) -> FloatArray:
     """Mean of a measure of the suspension's slope (ż_s − ż_u)/V over each segment, shape (segment, path)."""
-    step, length = profile.even_step(UNEVEN) or 0.0, float(np.ptp(profile.stations))
+    step, length = profile.even_step(PROCEDURE.uneven) or 0.0, float(np.ptp(profile.stations))
     with checking() as check:
         average = check.not_negative("average", average, "m")
         # A whole window, a fraction of a step at either end of it, and a step to measure.
         shortest = average + 3 * step
         if not step:
             check.refuse("profile", "must have stations at even steps [m]; resample it first")
-        elif step > LONGEST_STEP:
-            check.refuse("profile", f"must have a step of at most {LONGEST_STEP:g} m, got {step:g} m")
-        if length < RUN_IN:
-            check.refuse("profile", f"must be at least {RUN_IN:g} m long, got {length:g} m")
+        elif step > PROCEDURE.longest_step:
+            check.refuse("profile", f"must have a step of at most {PROCEDURE.longest_step:g} m, got {step:g} m")
+        if length < PROCEDURE.start:
+            check.refuse("profile", f"must be at least {PROCEDURE.start:g} m long, got {length:g} m")
         elif shortest > length:
             check.refuse("average", f"must leave something of the profile's {length:g} m, got {average:g} m")
         elif segment is not None and not shortest <= check.positive("segment", segment, "m") <= length * (1 + 1e-9):
@@ -185,7 +189,8 @@ def _segments(
     found = []
     for column in [elevation] if elevation.ndim == 1 else elevation.T:
         slopes = np.convolve(np.diff(column) / step, weights, mode="valid")
-        start = (np.interp(RUN_IN, step * np.arange(len(column)), column) - column[0]) / RUN_IN
+        ahead = np.interp(PROCEDURE.start, step * np.arange(len(column)), column)
+        start = (ahead - column[0]) / PROCEDURE.start
         taken = measure(suspension_slope(slopes, step, car, float(start)))
         found.append(np.add.reduceat(taken[: bounds[-1]], bounds[:-1]) / np.diff(bounds))
     return np.stack(found, axis=1)
@@ -215,7 +220,7 @@ def suspension_slope(slopes: FloatArray, step: float, car: ReferenceCar, start: 
     # The slope drives the car's slopes as the elevation drives its heights. One recursion of first order per mode
     # is exact, and unlike one of fourth order keeps its digits at steps of millimetres.
     poles, shapes, into = _modes(car)
-    kept = np.exp(poles * step / SPEED)
+    kept = np.exp(poles * step / PROCEDURE.speed)
     found = np.zeros(len(slopes))
     for pole, keep, shape, given in zip(poles, kept, shapes, into, strict=True):
         gain = shape * given / pole

@@ -15,14 +15,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Share of the road points that bear at most the aggregate force by which a road is judged.
-PERCENTILE = 95.0
-
-# Distance between points of the road [m].
-SPACING = 0.1
-
-# Bytes per point of the road at the peak of adding up forces, beside those of every path.
-BYTES_PER_POINT = 64
+# Distance between points of the road at which forces are added up [m] [a convention].
+POINT_SPACING = 0.1
 
 
 class ContactLoss(NamedTuple):
@@ -113,7 +107,7 @@ def road_stress_factor(coefficient: ArrayLike) -> FloatArray:
     return 1 + 6 * s**2 + 3 * s**4
 
 
-def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = SPACING) -> xr.Dataset:
+def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = POINT_SPACING) -> xr.Dataset:
     """Add up what all contacts of a vehicle do to each point of the road, Σ_j P_jk^n.
 
     P_jk is the total force of contact j as it passes point k. Points lie at whole multiples of the spacing, where
@@ -202,7 +196,7 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
     )
 
 
-def common_points(result: xr.Dataset, spacing: float = SPACING) -> FloatArray:
+def common_points(result: xr.Dataset, spacing: float = POINT_SPACING) -> FloatArray:
     """Points of the road that every contact passes during the record, at whole multiples of the spacing.
 
     Parameters
@@ -225,14 +219,16 @@ def common_points(result: xr.Dataset, spacing: float = SPACING) -> FloatArray:
     starts = result.attrs["start"] + result.position.values
     first = starts.max() + result.attrs["speed"] * result.time.values[0]
     last = starts.min() + result.attrs["speed"] * result.time.values[-1]
+    # Bytes per point at the peak of adding up forces, beside those of every path; 40 as measured [40 to 128].
+    bytes_per_point = 64
     require_memory(
-        (last - first) / spacing * (BYTES_PER_POINT + 8 * np.unique(result.path.values).size),
+        (last - first) / spacing * (bytes_per_point + 8 * np.unique(result.path.values).size),
         f"a spacing of {spacing:g} m between points",
     )
     return spacing * np.arange(np.ceil(first / spacing - 1e-9), np.floor(last / spacing + 1e-9) + 1)
 
 
-def road_wear(result: xr.Dataset, *, power: float = 4.0, percentile: float = PERCENTILE) -> FloatArray:
+def road_wear(result: xr.Dataset, *, power: float = 4.0, percentile: float = 95.0) -> FloatArray:
     """Aggregate force that a share of the road's points bear at most, over that of the static loads.
 
     Parameters
@@ -266,7 +262,7 @@ def road_wear(result: xr.Dataset, *, power: float = 4.0, percentile: float = PER
     return np.divide(most, static, out=np.full(most.shape, np.inf), where=static != 0)
 
 
-def spatial_repeatability(first: xr.Dataset, second: xr.Dataset, *, spacing: float = 0.1) -> FloatArray:
+def spatial_repeatability(first: xr.Dataset, second: xr.Dataset, *, spacing: float = POINT_SPACING) -> FloatArray:
     """Correlation of the forces that two vehicles, or two runs, put on the same points of a road.
 
     The spatial repeatability index: the correlation coefficient over the road's points of the forces, each summed

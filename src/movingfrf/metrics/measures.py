@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,9 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Checks, checking
 from movingfrf.metrics.comfort import (
-    CREST_LIMIT,
-    MTVV_LIMIT,
-    VDV_LIMIT,
+    ISO_2631,
     WEIGHTING_OF,
     WEIGHTINGS,
     Comfort,
@@ -35,12 +34,19 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-CEBON, EISENMANN, CYCLES = "Cebon 1999", "Eisenmann 1975", "ASTM E1049"
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sources:
+    """Sources of measures which their names alone do not define."""
 
-DEFLECTIONS = ("deflection", "static_deflection")
+    load: str = "Cebon 1999"  # dynamic load coefficient and wear
+    stress: str = "Eisenmann 1975"
+    cycles: str = "ASTM E1049"
+    crossings: str = "Rice 1945"
+    peak: str = "Davenport 1964"
+    damage: str = "Dirlik 1985"
 
-# Sources of what the names alone do not define.
-RICE, DAVENPORT, DIRLIK = "Rice 1945", "Davenport 1964", "Dirlik 1985"
+
+SOURCES = Sources()
 
 
 def measures(result: xr.Dataset) -> list[Measure]:
@@ -78,7 +84,7 @@ def measures(result: xr.Dataset) -> list[Measure]:
             for measure in _rms_and_peak(f"deflection at {point:g} m", deflection, "m")
         ]
     with checking() as check:
-        check_coupled(check, result, *DEFLECTIONS)
+        check_coupled(check, result, "deflection", "static_deflection")
     contacts, dofs = range(result.sizes["contact"]), range(result.sizes["dof"])
     coefficients = dynamic_load_coefficient(result)
     return [
@@ -144,7 +150,7 @@ def assess(
     ['MTVV', 'VDV']
     """
     with checking() as check:
-        check_coupled(check, result, *DEFLECTIONS)
+        check_coupled(check, result, "deflection", "static_deflection")
         if not check.faults:
             _check_chosen(check, "contacts", contacts, list(range(result.sizes["contact"])))
             _check_chosen(check, "dofs", dofs, result.dof.values.tolist())
@@ -162,14 +168,14 @@ def assess(
         quantity = f"contact {contact} force"
         found += [
             *_of_force(result, contact, coefficients),
-            Measure(quantity, "road stress factor", float(stress[contact]), "1", EISENMANN),
+            Measure(quantity, "road stress factor", float(stress[contact]), "1", SOURCES.stress),
             Measure(quantity, "share of time without contact", float(loss.share[contact]), "1"),
             Measure(quantity, "longest loss of contact", float(loss.longest[contact]), "s"),
         ]
         if slope is not None:
             force = result.contact_force.values[:, contact]
             amplitude = equivalent_amplitude(force, slope=slope, duration=force.size * step)
-            found.append(Measure(quantity, "damage-equivalent amplitude at 1 Hz", amplitude, "N", CYCLES))
+            found.append(Measure(quantity, "damage-equivalent amplitude at 1 Hz", amplitude, "N", SOURCES.cycles))
     for contact in numbers:
         found += _of_deflection(result, contact)
     if contacts is None:
@@ -187,7 +193,7 @@ def _of_force(result: xr.Dataset, contact: int, coefficients: FloatArray) -> lis
         Measure(quantity, "dynamic rms", _rms(force), "N"),
         Measure(quantity, "dynamic peak", float(np.abs(force).max()), "N"),
         Measure(quantity, "smallest total", load + float(force.min()), "N"),
-        Measure(quantity, "dynamic load coefficient", float(coefficients[contact]), "1", CEBON),
+        Measure(quantity, "dynamic load coefficient", float(coefficients[contact]), "1", SOURCES.load),
     ]
 
 
@@ -211,7 +217,7 @@ def _of_wear(result: xr.Dataset) -> list[Measure]:
         ratios, note = road_wear(result), ""
     name = "95th percentile of ΣP⁴ over static"
     return [
-        Measure(f"path {path} wear", name, float(ratio), "1", CEBON, note)
+        Measure(f"path {path} wear", name, float(ratio), "1", SOURCES.load, note)
         for path, ratio in zip(paths, ratios, strict=True)
     ]
 
@@ -243,9 +249,9 @@ def _verdicts(felt: Comfort, unit: str) -> dict[str, str]:
     if felt.weighting == "Wf" or not felt.rms:
         return {}
     limits = {
-        "crest": f"{CREST_LIMIT:g}",
-        "MTVV": f"{MTVV_LIMIT:g} times the weighted rms",
-        "VDV": f"{VDV_LIMIT:g} times the weighted rms times the fourth root of the duration",
+        "crest": f"{ISO_2631.crest_limit:g}",
+        "MTVV": f"{ISO_2631.mtvv_limit:g} times the weighted rms",
+        "VDV": f"{ISO_2631.vdv_limit:g} times the weighted rms times the fourth root of the duration",
     }
     return {
         "rms": f"{', or '.join(felt.reactions)} (ISO 2631-1, C.2.3)" if unit == "m" else "",
@@ -314,26 +320,26 @@ def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[M
         found += [
             Measure(force, "static", load, "N"),
             Measure(force, "rms", at.contact_force_rms.item(), "N"),
-            Measure(force, "expected peak", peak, "N", DAVENPORT),
-            Measure(force, "crossing rate", at.contact_force_crossing_rate.item(), "1/s", RICE),
-            Measure(force, "irregularity", at.contact_force_irregularity.item(), "1", RICE),
-            Measure(total, "dynamic load coefficient", coefficient, "1", CEBON),
-            Measure(total, "road stress factor", float(road_stress_factor(coefficient)), "1", EISENMANN),
-            Measure(total, "expected largest", load + peak, "N", DAVENPORT),
-            Measure(total, "lift-offs", at.lift_off_rate.item(), "1/s", RICE),
+            Measure(force, "expected peak", peak, "N", SOURCES.peak),
+            Measure(force, "crossing rate", at.contact_force_crossing_rate.item(), "1/s", SOURCES.crossings),
+            Measure(force, "irregularity", at.contact_force_irregularity.item(), "1", SOURCES.crossings),
+            Measure(total, "dynamic load coefficient", coefficient, "1", SOURCES.load),
+            Measure(total, "road stress factor", float(road_stress_factor(coefficient)), "1", SOURCES.stress),
+            Measure(total, "expected largest", load + peak, "N", SOURCES.peak),
+            Measure(total, "lift-offs", at.lift_off_rate.item(), "1/s", SOURCES.crossings),
             Measure(total, "share lifted off", at.lift_off_share.item(), "1"),
         ]
         if equivalent is not None:
             amplitude = float(equivalent[contact])
-            found.append(Measure(force, "damage-equivalent amplitude at 1 Hz", amplitude, "N", DIRLIK))
+            found.append(Measure(force, "damage-equivalent amplitude at 1 Hz", amplitude, "N", SOURCES.damage))
     for contact in result.contact.values.tolist():
         at = result.isel(contact=contact)
         quantity = f"contact {contact} deflection"
         found += [
             Measure(quantity, "static", at.static_deflection.item(), "m"),
             Measure(quantity, "rms", at.deflection_rms.item(), "m"),
-            Measure(quantity, "expected peak", at.deflection_expected_peak.item(), "m", DAVENPORT),
-            Measure(quantity, "crossing rate", at.deflection_crossing_rate.item(), "1/s", RICE),
+            Measure(quantity, "expected peak", at.deflection_expected_peak.item(), "m", SOURCES.peak),
+            Measure(quantity, "crossing rate", at.deflection_crossing_rate.item(), "1/s", SOURCES.crossings),
         ]
     for dof in range(result.sizes["dof"]):
         at = result.isel(dof=dof)
@@ -341,8 +347,8 @@ def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[M
         weighting = WEIGHTING_OF[at.dof_unit.item()]
         found += [
             Measure(quantity, "rms", at.acceleration_rms.item(), unit),
-            Measure(quantity, "expected peak", at.acceleration_expected_peak.item(), unit, DAVENPORT),
-            Measure(quantity, "crossing rate", at.acceleration_crossing_rate.item(), "1/s", RICE),
+            Measure(quantity, "expected peak", at.acceleration_expected_peak.item(), unit, SOURCES.peak),
+            Measure(quantity, "crossing rate", at.acceleration_crossing_rate.item(), "1/s", SOURCES.crossings),
             Measure(quantity, f"weighted rms ({weighting})", at.weighted_acceleration.item(), unit, "ISO 2631-1"),
         ]
     return found

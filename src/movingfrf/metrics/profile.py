@@ -10,40 +10,46 @@ import numpy as np
 from movingfrf._basics.arrays import ComplexArray, FloatArray, finite
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.welch import FLAT
-from movingfrf._basics.wording import evenly_spread
-from movingfrf._basics.wording import paths as named
-from movingfrf.metrics.iri import AVERAGE, LONGEST_STEP, RUN_IN, iri
+from movingfrf._basics.wording import evenly_spread, named_paths
+from movingfrf.metrics.iri import PROCEDURE, iri
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
 from movingfrf.roughness.preparation import resampled, selected
 from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES
 
-# Segments over which the roughness index is taken [m].
-SEGMENTS = (20.0, 100.0)
-
-# How far a station may lie from an even grid, as a share of the step, without need to interpolate: the rounding of
-# a file's stations.
-UNEVEN = 0.02
-
-# Welch's method: half-overlapping pieces, at least so many, and none longer than this [m]. Three lines of its
-# spectrum make the lowest wave, so that the longest wave that ISO 8608 fits, 91 m, is within reach.
-PIECES, LONGEST_PIECE = 8, 400.0
-
-# What looks odd: an elevation this far from the middle of its neighbours [m], and so many times further than usual;
-# and a stretch of this length [m] and so many stations without any change.
-SPIKE, UNUSUAL = 5e-3, 15.0
-LEVEL, LEVEL_STATIONS = 5.0, 20
-
-# Of level stretches the longest so many are named.
-MOST_STRETCHES = 5
-
-# Rougher than roads are: a density at 0.1 cycle/m [m³], where class H begins, and an index [mm/m]. A smooth road
-# whose centimetres are taken for metres lies beyond both.
-NO_ROAD = (2 * CLASS_CENTRES["G"], 200.0)
-
-# Resolutions of instruments and file formats that are looked for [m], and on how many stations.
+# Resolutions of instruments and file formats that are looked for [m].
 RESOLUTIONS = (1e-2, 1e-3, 5e-4, 2.5e-4, 1e-4, 1e-5, 1e-6)
-LOOKED_AT = 20_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pieces:
+    """Half-overlapping pieces of a profile for Welch's method; in brackets, between what each number is safe."""
+
+    # As many as `welch` takes [a convention: with 6 or 12 a road near the limit of a class changes over].
+    fewest: int = 8
+    # Length of the longest one [m]. Three lines of its spectrum make the lowest wave, so that the longest wave that
+    # ISO 8608 fits, 91 m, is within reach [280 to 1000].
+    longest: float = 400.0
+
+
+PIECES = Pieces()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Oddities:
+    """From what on a profile looks odd: conventions, all of them."""
+
+    spike: float = 5e-3  # distance of an elevation from the middle of its neighbours [m]
+    unusual: float = 15.0  # the same over the usual one
+    level: float = 5.0  # length of a stretch without any change [m]
+    level_stations: int = 20  # stations of it
+    most_stretches: int = 5  # of level stretches the longest so many are named
+    # Rougher than roads are. A smooth road whose centimetres are taken for metres lies beyond both.
+    density: float = 2 * CLASS_CENTRES["G"]  # at 0.1 cycle/m [m³], where class H begins
+    index: float = 200.0  # [mm/m]
+
+
+ODDITIES = Oddities()
 
 
 class Spectra(NamedTuple):
@@ -157,13 +163,13 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
     steps = np.diff(profile.stations)
     alike = profile.alike
     findings = [
-        f"{_sentence(named(same))} are equal: path {same[0]} is described for all."
+        f"{_sentence(named_paths(same))} are equal: path {same[0]} is described for all."
         for same in alike
         if len(same) > 1
     ]
     numbers = [alike[n][0] for n in evenly_spread(len(alike))]
     described = selected(profile, paths=numbers) if len(numbers) < profile.paths else profile
-    step = described.even_step(UNEVEN)
+    step = described.even_step(PROCEDURE.uneven)
     if step is None:
         progress("even stations", 0.0)
         step = float(np.median(steps))
@@ -267,7 +273,7 @@ def _path(
         across=across,
         lowest=float(elevation.min()),
         highest=float(elevation.max()),
-        resolution=_resolution(elevation[:LOOKED_AT]),
+        resolution=_resolution(elevation),
         fit=fit_iso(*spectrum),
         index=float(indices[0.0][0, column]) if 0.0 in indices else float("nan"),
         indices={span: found[:, column] for span, found in indices.items() if span},
@@ -281,7 +287,7 @@ def _spectra(columns: FloatArray, step: float) -> Spectra:
     from scipy.fft import rfft
 
     stations, paths = columns.shape
-    pieces = max(PIECES, int(2 * step * stations / LONGEST_PIECE))
+    pieces = max(PIECES.fewest, int(2 * step * stations / PIECES.longest))
     length = min(max(2 * stations // (pieces + 1), 8), stations)
     window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(length) / length)
     ramp = np.arange(length) - (length - 1) / 2
@@ -306,14 +312,16 @@ def _spectra(columns: FloatArray, step: float) -> Spectra:
 def _indices(even: Profile, step: float, progress: Progress) -> tuple[dict[float, FloatArray], str]:
     """Roughness index of the whole (at 0) and of segments, and why there is none."""
     length = float(np.ptp(even.stations))
-    if step > LONGEST_STEP:
+    if step > PROCEDURE.longest_step:
         return (
             {},
-            f"The roughness index needs a step of at most {LONGEST_STEP:.2g} m, and there is one of {step:.4g} m.",
+            f"The roughness index needs a step of at most {PROCEDURE.longest_step:.2g} m, and there is one of "
+            f"{step:.4g} m.",
         )
-    if length < RUN_IN:
-        return {}, f"The roughness index needs {RUN_IN:g} m of road, and there are {length:.4g} m."
-    wanted = [0.0, *(span for span in SEGMENTS if step * 4 + AVERAGE < span <= length)]
+    if length < PROCEDURE.start:
+        return {}, f"The roughness index needs {PROCEDURE.start:g} m of road, and there are {length:.4g} m."
+    # Segments of 20 m and 100 m [a convention].
+    wanted = [0.0, *(span for span in (20.0, 100.0) if step * 4 + PROCEDURE.average < span <= length)]
     found = {}
     for n, span in enumerate(wanted):
         progress("roughness index", n / len(wanted))
@@ -337,6 +345,8 @@ def _coherence(estimated: Spectra) -> tuple[FloatArray, FloatArray] | None:
 
 def _resolution(elevation: FloatArray) -> float:
     """Find what all elevations are a multiple of [m]; 0 if nothing that is usual."""
+    # So many stations are looked at [1000 and more].
+    elevation = elevation[:20_000]
     for resolution in RESOLUTIONS:
         counts = (elevation - elevation[0]) / resolution
         # Rounding of the numbers themselves, which may be hundreds of metres.
@@ -353,13 +363,13 @@ def _doubts(paths: list[PathDescription]) -> list[str]:
         words = f"no class: {path.fit.reason}" if path.fit.reason else path.fit.doubt
         if words:
             said.setdefault(f"{words}.", []).append(path.number)
-        if path.fit.roughness_at_two > NO_ROAD[0] or path.index > NO_ROAD[1]:
+        if path.fit.roughness_at_two > ODDITIES.density or path.index > ODDITIES.index:
             rough = (f"IRI {path.index:.4g} mm/m",) if np.isfinite(path.index) else ()
             dense = () if path.fit.reason else (f"{path.fit.roughness_at_two:.3g} m³ at 0.1 cycle/m",)
             words = f"rougher than roads are, {' and '.join(rough + dense)}: are the elevations in metres?"
             said.setdefault(words, []).append(path.number)
     return [
-        _sentence(words if len(numbers) == len(paths) else f"{named(numbers)}: {words}")
+        _sentence(words if len(numbers) == len(paths) else f"{named_paths(numbers)}: {words}")
         for words, numbers in said.items()
     ]
 
@@ -375,7 +385,7 @@ def _oddities(stations: FloatArray, elevation: FloatArray, of: str) -> list[str]
     # A spike bends its neighbours half as much; it is counted once.
     around = np.pad(bend, 1)
     peak = (bend >= around[:-2]) & (bend > around[2:])
-    high = np.flatnonzero(peak & (bend > max(SPIKE, UNUSUAL * float(np.median(bend)))))
+    high = np.flatnonzero(peak & (bend > max(ODDITIES.spike, ODDITIES.unusual * float(np.median(bend)))))
     if high.size:
         worst = int(high[bend[high].argmax()])
         by = f"by {1e3 * bend[worst]:.3g} mm at {stations[worst + 1]:g} m: a spike, or a sharp edge of the road."
@@ -385,9 +395,9 @@ def _oddities(stations: FloatArray, elevation: FloatArray, of: str) -> list[str]
     changes = np.flatnonzero(np.diff(elevation) != 0)
     bounds = np.concatenate([[0], changes + 1, [len(elevation)]])
     lengths = stations[bounds[1:] - 1] - stations[bounds[:-1]]
-    level = np.flatnonzero((np.diff(bounds) > LEVEL_STATIONS) & (lengths >= LEVEL))
+    level = np.flatnonzero((np.diff(bounds) > ODDITIES.level_stations) & (lengths >= ODDITIES.level))
     if level.size:
-        longest = level[np.sort(np.argsort(-lengths[level], kind="stable")[:MOST_STRETCHES])]
+        longest = level[np.sort(np.argsort(-lengths[level], kind="stable")[: ODDITIES.most_stretches])]
         places = [f"over {lengths[n]:.4g} m from {stations[bounds[n]]:g} m on" for n in longest]
         more = f", and in {level.size - len(places)} shorter stretches" if level.size > len(places) else ""
         found.append(

@@ -151,7 +151,7 @@ def measures_as_csv(found: list[Measure]) -> str:
     return text.getvalue()
 
 
-def summary(result: xr.Dataset, found: list[Measure]) -> str:
+def summary_as_json(result: xr.Dataset, found: list[Measure]) -> str:
     """Summarise a result as JSON: settings, measures and findings.
 
     Parameters

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -11,14 +12,19 @@ import numpy as np
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import ValidityWarning
 
-# Share of the critical speed from which on it is worth a word.
-NEAR_CRITICAL = 0.8
 
-# What may wrap around from the end of the padding, and what a truncation may change, relative to a whole record.
-TOLERATED = 1e-3
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Thresholds:
+    """From where on something is worth a word: conventions, all of them."""
 
-# Share of the roughness that may lie in the highest tenth of the frequencies, as an amplitude.
-AT_NYQUIST = 0.01
+    near_critical: float = 0.8  # share of the critical speed
+    # What may wrap around from the end of the padding, and what a truncation may change, relative to a record.
+    tolerated: float = 1e-3
+    # Share of the roughness that may lie in the highest tenth of the frequencies, as an amplitude.
+    at_nyquist: float = 0.01
+
+
+THRESHOLDS = Thresholds()
 
 
 class Finding(NamedTuple):
@@ -47,7 +53,7 @@ def contact_lost(total_force: FloatArray, time_step: float) -> list[Finding]:
 
 def near_critical(speed: float, critical_speed: float) -> list[Finding]:
     """Speed [m/s] close to or above the critical speed [m/s]."""
-    if speed < NEAR_CRITICAL * critical_speed:
+    if speed < THRESHOLDS.near_critical * critical_speed:
         return []
     where = "above" if speed > critical_speed else "close to"
     return [
@@ -63,7 +69,7 @@ def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Find
     """Compare what wraps around from the end of the padding (channel,) with records (time, channel)."""
     size = np.sqrt([channel @ channel / len(channel) for channel in values.T])
     left = np.divide(wrapped, size, out=np.zeros_like(size), where=size > 0).max(initial=0.0)
-    if left <= TOLERATED:
+    if left <= THRESHOLDS.tolerated:
         return []
     return [
         Finding(
@@ -76,7 +82,7 @@ def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Find
 
 def beyond_truncation(truncation: float, error: float) -> list[Finding]:
     """Say what a truncation [Hz] may change, relative to the whole record."""
-    if error <= TOLERATED:
+    if error <= THRESHOLDS.tolerated:
         return []
     return [
         Finding(
@@ -96,7 +102,7 @@ def beyond_nyquist(roughness: ComplexArray, time_step: float) -> list[Finding]:
         energy = (spectrum.real**2 + spectrum.imag**2) * squared
         if energy.any():
             share = max(share, float(np.sqrt(energy[first:].sum() / energy.sum())))
-    if share <= AT_NYQUIST:
+    if share <= THRESHOLDS.at_nyquist:
         return []
     return [
         Finding(

@@ -25,11 +25,9 @@ class Label(NamedTuple):
     optional: bool = False
 
 
-_TIME = Label(("time",), "s", "time", coordinate=True)
-
 # The response of a vehicle and a guideway to a rough road.
 COUPLED: dict[str, Label] = {
-    "time": _TIME,
+    "time": Label(("time",), "s", "time", coordinate=True),
     "contact": Label(("contact",), "1", "number of the contact", coordinate=True),
     "position": Label(("contact",), "m", "position of the contact, ahead positive", coordinate=True),
     "path": Label(("contact",), "1", "path of the profile that the contact follows", coordinate=True),
@@ -50,7 +48,7 @@ COUPLED: dict[str, Label] = {
 
 # The response of a guideway to prescribed forces.
 LOADED: dict[str, Label] = {
-    "time": _TIME,
+    "time": COUPLED["time"],
     "load": Label(("load",), "m", "position of the load, ahead positive", coordinate=True),
     "point": Label(("point",), "m", "position of the observer, ahead positive", coordinate=True),
     "force": Label(("time", "load"), "N", "prescribed force, down"),

@@ -197,7 +197,7 @@ def _roughness(road: Road) -> list[tuple[str, str]]:
     step = float(np.median(np.diff(stations)))
     for paths in profile.alike:
         fit = fit_iso(*welch(profile.along(paths[0])(np.arange(stations[0], stations[-1], step)), step))
-        of = "" if profile.paths == 1 else f" of {wording.paths(paths)}"
+        of = "" if profile.paths == 1 else f" of {wording.named_paths(paths)}"
         if fit.reason:
             lines.append((f"ISO 8608 class{of}", f"none: {fit.reason}"))
             continue

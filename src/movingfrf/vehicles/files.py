@@ -189,7 +189,7 @@ def _read_mat(path: Path) -> dict[str, Any]:
     if data.startswith(b"MATLAB 7.3"):
         raise ValueError(f"{path}: is a MATLAB 7.3 file; save it with -v7")
     try:
-        found = matlab_file.contents(data)
+        found = matlab_file.arrays_and_texts(data)
         numbers = {name: stored.load() for name, stored in found.numbers.items()}
         return numbers | {name: load() if name in OPTIONAL else [] for name, load in found.texts.items()}
     except ValueError as error:

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.matlab_file import UNPACKED, UNPACKED_LEAST
+from movingfrf._basics.matlab_file import UNPACKING
 from movingfrf.roughness.formats.arrays import Array
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -61,7 +61,7 @@ def opened(path: Path) -> Iterator[Contents]:
         If it is no such file, or damaged.
     """
     size = _require_bounds(path)
-    most = max(UNPACKED * size, UNPACKED_LEAST)
+    most = UNPACKING.most(size)
     with tempfile.TemporaryDirectory(prefix="movingfrf-") as name:
         folder = Path(name)
         child = Path(__file__).with_name("hdf_child.py")

@@ -20,7 +20,7 @@ def read(path: Path, columns: Sequence[Column] | None) -> Record:
         del data
         with hdf.opened(path) as content:
             return arrays.record(content.arrays, columns, "MATLAB 7.3 file")
-    numbers = matlab_file.contents(data).numbers
+    numbers = matlab_file.arrays_and_texts(data).numbers
     return arrays.record(
         {name: arrays.Array(stored.shape, stored.load) for name, stored in numbers.items()}, columns, "MATLAB file"
     )
