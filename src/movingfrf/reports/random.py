@@ -107,7 +107,7 @@ def drawing_frequencies(result: xr.Dataset) -> FloatArray:
     return np.union1d(lines, np.geomspace(lines[0], lines[-1], DRAWN_FREQUENCIES))
 
 
-def paths(result: xr.Dataset) -> str:
+def paths_in_words(result: xr.Dataset) -> str:
     """Say what the paths of a random road have in common.
 
     Parameters
@@ -148,7 +148,7 @@ def _settings(result: xr.Dataset) -> list[Setting]:
             else "",
         ),
         Setting("Spectrum (SI units)", attrs["spectrum"], wide=True),
-        Setting("Paths", paths(result), wide=True),
+        Setting("Paths", paths_in_words(result), wide=True),
         Setting("Road (SI units)", attrs["guideway"], wide=True),
     ]
 
