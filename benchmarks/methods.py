@@ -19,7 +19,6 @@ os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from importlib.resources import files
 from itertools import pairwise
 
 import numpy as np
@@ -31,6 +30,7 @@ from movingfrf.results.labels import COUPLED, labelled
 from movingfrf.roughness.excitation import excite
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Scenario
+from movingfrf.scenarios.template import template
 from movingfrf.stepping.marching import March
 from movingfrf.stepping.schemes import SCHEMES
 from movingfrf.stepping.tie import tie_of
@@ -77,8 +77,7 @@ def struck_roads() -> None:
 
 def reference_case():
     """Read the reference case: what `movingfrf new` writes."""
-    text = files("movingfrf").joinpath("scenarios", "templates", "scenario.toml").read_text(encoding="utf-8")
-    return parse_scenario(text, name="reference case")
+    return parse_scenario(template("scenario"), name="reference case")
 
 
 def steps_of_the_coupled_method() -> None:

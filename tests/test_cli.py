@@ -13,8 +13,9 @@ import pytest
 import xarray as xr
 from rich.console import Console
 
-from movingfrf.commands.console import _head, _print_columns, cell_of
+from movingfrf.commands.console import _head, cell_of, listing, measures_in_lines, print_table, print_tables
 from movingfrf.commands.main import main
+from movingfrf.reports.tables import Column, Row, Table
 from movingfrf.results.labels import Measure
 from tests.test_scenario import LOADS, edited
 
@@ -175,7 +176,8 @@ def test_a_printed_table_fits_and_loses_nothing(width):
     heads = ["resolution [m]", "dynamic load coefficient", *(f"acceleration of wheel {n} [m/s²]" for n in range(6))]
     rows = {f"contact {n} force": [f"{1.234e5 + n + 10 * column:.7g}" for column in range(8)] for n in range(3)}
     written = io.StringIO()
-    _print_columns(Console(width=width, file=written, markup=False), "contact", heads, rows)
+    table = Table("", "contact", [Column(head, "") for head in heads], [Row(*row) for row in rows.items()])
+    print_tables(Console(width=width, file=written, markup=False), [table])
     told = written.getvalue()
     assert max(map(len, told.splitlines())) <= width
     assert "…" not in told
@@ -187,11 +189,33 @@ def test_a_printed_table_fits_and_loses_nothing(width):
     assert width < 200 or told.count("\n\n") == 1
 
 
+def printed(table, width):
+    written = io.StringIO()
+    print_table(Console(width=width, file=written, markup=False), table)
+    return written.getvalue()
+
+
+@pytest.mark.parametrize(("width", "pieces"), [(32, 3), (45, 2), (60, 1)])
+def test_measures_line_by_line_lose_no_digit(width, pieces):
+    """Where value, unit and standard do not fit beside each other they follow below: no 9.84e for 9.84e+04."""
+    found = [Measure("contact 0 force", f"root mean square {n}", 9.84e4, "N", "Cebon 1999") for n in range(3)]
+    told = printed(measures_in_lines(found), width)
+    assert max(map(len, told.splitlines())) <= width
+    assert told.count("9.84e+04") == told.count("Cebon 1999") == 3
+    assert told.count("contact 0 force") == told.count("\n\n") + 1 == pieces
+
+
+def test_a_list_of_names_and_values_keeps_its_letters_and_wraps():
+    told = printed(listing("Roughness", [("spectrum", "1.6e−05 m³ at 0.1 cycle/m, × 10⁻⁶")]), 30)
+    assert told.split() == "Roughness spectrum 1.6e−05 m³ at 0.1 cycle/m, × 10⁻⁶".split()
+    assert max(map(len, told.splitlines())) <= 30
+
+
 def test_numbers_that_are_none_or_never():
     """A rate of 1e-46 a second says never; what has no value is a dash; what has no dimension has no unit."""
     assert cell_of(Measure("x", "lift-offs", 2.03e-46, "1/s")) == "< 1e-12"
     assert cell_of(Measure("x", "share", 0.0, "1")) == "0"
     assert cell_of(Measure("x", "rms", 2.03e-46, "m")) == "2.03e-46"
     assert cell_of(Measure("x", "crossing rate", float("nan"), "1/s")) == "–"
-    assert _head("dynamic load coefficient", "1") == "dynamic load coefficient"
-    assert _head("static", "N") == "static [N]"
+    assert _head(Column("dynamic load coefficient", "1")) == "dynamic load coefficient"
+    assert _head(Column("static", "N")) == "static [N]"

@@ -12,7 +12,7 @@ from movingfrf._basics.welch import spectral_density
 from movingfrf.reports import plots
 from movingfrf.reports.axes import decimated
 from movingfrf.reports.curves import PALETTE, Curve, _curves, distinct, telling
-from movingfrf.reports.frf import FRF_RANGE, frf_amplitude, frf_phase
+from movingfrf.reports.frf import FRF_AXES, frf_amplitude, frf_phase
 
 
 @pytest.fixture(scope="module")
@@ -175,4 +175,4 @@ def test_a_phase_is_drawn_where_the_amplitude_is():
     frequency = np.linspace(0.0, 10.0, 101)
     frf = np.exp(-2.0 * frequency)[:, None] * np.exp(-1j * frequency[:, None])
     phase = frf_phase(frequency, frf, [0.0], axes()).lines[0].get_ydata()
-    assert np.isfinite(phase).tolist() == (np.exp(-2.0 * frequency) >= FRF_RANGE).tolist()
+    assert np.isfinite(phase).tolist() == (np.exp(-2.0 * frequency) >= FRF_AXES.depth).tolist()

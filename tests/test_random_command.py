@@ -11,7 +11,7 @@ import xarray as xr
 import movingfrf as mf
 from movingfrf.commands.main import main
 from movingfrf.metrics.measures import random_measures
-from movingfrf.reports.random import drawing_frequencies, paths, render
+from movingfrf.reports.random import drawing_frequencies, paths_in_words, render
 from tests.helpers import DAMPED, FULL_TRUCK
 from tests.test_scenario import LOADS, TEMPLATE
 
@@ -90,7 +90,7 @@ def test_what_the_paths_have_in_common(coherence, words):
     spectrum = mf.IsoRoad.of_class("A", band=(0.1, 1.0))
     car = mf.full_car(**FULL_TRUCK)
     result = mf.random_response(mf.RigidGuideway(), car, spectrum, speed=10.0, coherence=coherence)
-    assert paths(result) == words
+    assert paths_in_words(result) == words
 
 
 @pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")

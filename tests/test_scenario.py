@@ -1,7 +1,5 @@
 """Scenario files: what they build, and everything that is wrong with one reported at once."""
 
-from importlib.resources import files
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,8 +8,9 @@ from hypothesis import strategies as st
 import movingfrf as mf
 from movingfrf.scenarios.kinds import KINDS
 from movingfrf.scenarios.reading import parse_scenario
+from movingfrf.scenarios.template import template
 
-TEMPLATE = files("movingfrf").joinpath("scenarios", "templates", "scenario.toml").read_text(encoding="utf-8")
+TEMPLATE = template("scenario")
 
 LOADS = """
 [guideway]
@@ -39,7 +38,7 @@ duration = 2.0
 """
 
 
-LOADS_TEMPLATE = files("movingfrf").joinpath("scenarios", "templates", "loads.toml").read_text(encoding="utf-8")
+LOADS_TEMPLATE = template("loads")
 
 
 def faults(text, **where):

@@ -1,6 +1,5 @@
 """Make the picture of the README: `python docs/images/make.py`."""
 
-from importlib.resources import files
 from pathlib import Path
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -9,12 +8,12 @@ from matplotlib.figure import Figure
 from movingfrf.reports import plots
 from movingfrf.reports.axes import legend_above
 from movingfrf.scenarios.reading import parse_scenario
+from movingfrf.scenarios.template import template
 
 
 def main() -> None:
     """Draw the reference case: contact forces and deflections, five seconds of them."""
-    text = files("movingfrf").joinpath("scenarios", "templates", "scenario.toml").read_text(encoding="utf-8")
-    result = parse_scenario(text).run()
+    result = parse_scenario(template("scenario")).run()
     figure = Figure(figsize=(9.6, 4.6), layout="constrained", dpi=110)
     FigureCanvasAgg(figure)
     above, below = figure.subplots(2, 1, sharex=True)

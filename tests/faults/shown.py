@@ -17,7 +17,7 @@ FAULTS = [
     Fault("packed bombs let in", "_basics/matlab_file.py", "most or limit)", "most or 0)"),
     # What is left out, told apart, cut and refused.
     Fault("nan that passes", "results/labels.py", "~np.isfinite(values)", "np.isinf(values)"),
-    Fault("curve that hides another", "reports/curves.py", "<= COINCIDENT * np.abs(other)", "<= np.abs(other)"),
+    Fault("curve that hides another", "reports/curves.py", "<= coincident * np.abs(other)", "<= np.abs(other)"),
     Fault("roll for a bounce", "reports/curves.py", "units[dof] != units[one] or abs(size", "abs(size"),
     Fault("wheels before bodies", "reports/curves.py", "key=lambda dof: rms[dof])", "key=lambda dof: -rms[dof])"),
     Fault("moving FRF up to a truncation", "reports/frf.py", "return min(max(ends), kept)", "return kept"),

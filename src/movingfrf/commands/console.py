@@ -6,47 +6,54 @@ import json
 import math
 import textwrap
 import time
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
+from rich.table import Table as Grid
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     import xarray as xr
 
-    from movingfrf.reports.tables import Table as TableForReading
+    from movingfrf.reports.tables import Column, Table
     from movingfrf.results.labels import Measure
 
 
-# Raised digits and minus signs → as they are typed.
-TYPED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Layout:
+    """How tables are laid out on a console, in letters."""
 
-# Columns of the output where there is no terminal; letters of a head on one line, at least; gap between columns.
-PIPED, HEAD, GAP = 160, 12, 2
+    piped: int = 160  # width of the output where there is no terminal [a convention]
+    head: int = 12  # what a line of a head may take, even above shorter numbers [a convention]
+    gap: int = 2  # between columns: one letter of rich's padding beside each of the two
 
-# A computation shorter than this shows no progress [s].
-PATIENCE = 1.0
 
-# The most that a stage shows as done.
-ALMOST = 0.999
+LAYOUT = Layout()
 
 
 def plain_console() -> Console:
     """Console that prints names as they are, whatever brackets or colons they hold."""
     console = Console(highlight=False, markup=False, emoji=False)
     if not console.is_terminal:
-        console.width = PIPED
+        console.width = LAYOUT.piped
     return console
 
 
 class Stages:
-    """Shows which stage a computation is in, if it takes long, and remembers how long each took."""
+    """Shows which stage a computation is in, if it takes long, and remembers how long each took.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    patience : float
+        A computation shorter than this shows nothing [s].
+    """
+
+    def __init__(self, patience: float = 1.0) -> None:
         self.seconds: dict[str, float] = {}
+        self._patience = patience
         self._began = self._since = time.perf_counter()
         self._stage = ""
         terminal = Console(stderr=True)
@@ -77,36 +84,57 @@ class Stages:
             if self._stage:
                 self.seconds[self._stage] = self.seconds.get(self._stage, 0.0) + now - self._since
             self._stage, self._since = stage, now
-        if self._shows and now - self._began > PATIENCE and stage and not self._display.live.is_started:
+        if self._shows and now - self._began > self._patience and stage and not self._display.live.is_started:
             self._display.start()
         # A task that is done would stop its clock.
-        self._display.update(self._task, description=stage, completed=min(fraction, ALMOST))
+        self._display.update(self._task, description=stage, completed=min(fraction, 0.999))
 
     def table(self) -> Table:
         """Time of every stage."""
-        table = Table(title="Time", title_justify="left", title_style="bold", show_header=False, box=None)
-        for stage, seconds in self.seconds.items():
-            table.add_row(stage, f"{seconds:.3f} s")
-        return table
+        return listing("Time", ((stage, f"{seconds:.3f} s") for stage, seconds in self.seconds.items()))
 
 
-def print_result(console: Console, result: xr.Dataset, found: list[Measure]) -> None:
-    """Print measures, one table for all quantities that were measured alike, and findings."""
+def listing(heading: str, lines: Iterable[tuple[str, str]]) -> Table:
+    """Names and values under a heading: a table without heads."""
+    from movingfrf.reports.tables import Column, Row, Table
+
+    return Table(heading, "", [Column("", "", words=True)], [Row(name, [value]) for name, value in lines])
+
+
+def measures_in_lines(found: Sequence[Measure]) -> Table:
+    """Put measures into a table, each in a line with its unit and who defines it, below what was measured."""
+    from movingfrf.reports.tables import Column, Row, Table
+
+    rows: list[Row] = []
+    above = ""
+    for taken in found:
+        if taken.quantity != above:
+            rows.append(Row(taken.quantity, []))
+        units = "" if taken.units == "1" else taken.units
+        rows.append(Row(f"  {taken.name}", [cell_of(taken), units, taken.standard]))
+        above = taken.quantity
+    return Table("", "", [Column("value", ""), Column("unit", "", words=True), Column("by", "", words=True)], rows)
+
+
+def measures_in_rows(found: Sequence[Measure]) -> list[Table]:
+    """Put measures into tables: one for all quantities that were measured alike, with a row for each."""
+    from movingfrf.reports.tables import Column, Row, Table
+
     quantities: dict[str, list[Measure]] = {}
     for measure in found:
         quantities.setdefault(measure.quantity, []).append(measure)
-    tables: dict[tuple[str, ...], dict[str, list[str]]] = {}
+    tables: dict[tuple[Column, ...], Table] = {}
     for quantity, taken in quantities.items():
-        heads = tuple(_head(measure.name, measure.units) for measure in taken)
-        tables.setdefault(heads, {})[quantity] = [cell_of(measure) for measure in taken]
-    for heads, rows in tables.items():
-        _print_columns(console, "", heads, rows)
+        columns = tuple(Column(measure.name, measure.units) for measure in taken)
+        table = tables.setdefault(columns, Table("", "", list(columns), []))
+        table.rows.append(Row(quantity, [cell_of(measure) for measure in taken]))
+    return list(tables.values())
+
+
+def print_result(console: Console, result: xr.Dataset, found: Sequence[Measure]) -> None:
+    """Print measures and findings."""
+    print_tables(console, measures_in_rows(found))
     print_findings(console, [finding["message"] for finding in json.loads(result.attrs["findings"])])
-
-
-def _head(name: str, units: str) -> str:
-    """Head of a column; what has no dimension has no unit."""
-    return name if units in ("", "1") else f"{name} [{units}]"
 
 
 def cell_of(measure: Measure) -> str:
@@ -118,43 +146,82 @@ def cell_of(measure: Measure) -> str:
     return f"< {NEVER:g}" if is_never(measure.value, measure.units) else f"{measure.value:.4g}"
 
 
-def _print_columns(console: Console, corner: str, heads: Sequence[str], rows: Mapping[str, Sequence[str]]) -> None:
-    """Print a table; where a console is too narrow for its columns, in pieces below each other."""
-    columns: list[tuple[str, list[str]]] = []
-    pieces: list[list[int]] = [[]]
-    room = console.width - max(map(len, [corner, *rows]))
-    left = room
-    bodies = list(zip(*rows.values(), strict=True))
-    roomy = sum(GAP + max(map(len, [head, *cells])) for head, cells in zip(heads, bodies, strict=True)) <= room
-    for number, cells in enumerate(bodies):
-        # Where room is short a head may take more lines than one, but no word of it breaks.
-        widest = max(HEAD, *map(len, [*heads[number].split(), *cells]))
-        lines = [heads[number]] if roomy else textwrap.wrap(heads[number], widest)
-        columns.append(("\n".join(lines), list(cells)))
-        width = GAP + max(map(len, [*lines, *cells]))
-        if pieces[-1] and width > left:
-            pieces.append([])
-            left = room
-        pieces[-1].append(number)
-        left -= width
-    for piece in pieces:
-        table = Table(box=None, pad_edge=False)
-        table.add_column(corner, no_wrap=True, overflow="fold")
-        for number in piece:
-            table.add_column(columns[number][0], justify="right", no_wrap=True)
-        for at, name in enumerate(rows):
-            table.add_row(name, *(columns[number][1][at] for number in piece))
-        console.print(table)
+def print_tables(console: Console, tables: Iterable[Table]) -> None:
+    """Print tables, each with an empty line below it."""
+    for table in tables:
+        print_table(console, table)
         console.print()
 
 
-def print_sections(console: Console, sections: list[tuple[str, list[tuple[str, str]]]]) -> None:
-    """Print headings, each with lines of name and value."""
-    for heading, lines in sections:
-        table = Table(title=heading, title_justify="left", title_style="bold", show_header=False, box=None)
-        for name, value in lines:
-            table.add_row(name, value)
-        console.print(table)
+def print_table(console: Console, table: Table) -> None:
+    """Print a table, the one way in which anything in columns gets onto a console.
+
+    Where the console is too narrow, a table is printed in pieces below each other; of one without heads, a list of
+    names and values, the values take more lines instead.
+    """
+    heads = [_head(column) for column in table.columns]
+    listed = not any(heads)
+    rows = [
+        [cell if column.words else _typed(cell) for column, cell in zip(table.columns, row.cells, strict=True)]
+        if row.cells
+        else []
+        for row in table.rows
+    ]
+    if table.caption and not listed:
+        console.print(table.caption, style="bold")
+    names = [table.corner, *(row.name for row in table.rows)]
+    pieces = [dict(enumerate(heads))] if listed else _pieces(console.width, names, heads, rows)
+    for number, piece in enumerate(pieces):
+        if number:
+            console.print()
+        grid = Grid(
+            title=table.caption if listed else None,
+            title_justify="left",
+            title_style="bold",
+            show_header=not listed,
+            box=None,
+            pad_edge=listed,
+        )
+        grid.add_column(table.corner, no_wrap=not listed, overflow="ellipsis" if listed else "fold")
+        for column, head in piece.items():
+            grid.add_column(head, justify="left" if table.columns[column].words else "right", no_wrap=not listed)
+        for row, cells in zip(table.rows, rows, strict=True):
+            grid.add_row(row.name, *(cells[column] for column in piece if cells), style=None if cells else "bold")
+        console.print(grid)
+
+
+def _head(column: Column) -> str:
+    """Head of a column; what has no dimension has no unit."""
+    return column.name if column.units in ("", "1") else f"{column.name} [{column.units}]"
+
+
+def _typed(number: str) -> str:
+    """Write a number as it is typed, powers of ten too, since a console has no raised digits to speak of."""
+    return number.replace(" × 10", "e").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-"))
+
+
+def _pieces(
+    across: int, names: Sequence[str], heads: Sequence[str], rows: Sequence[Sequence[str]]
+) -> list[dict[int, str]]:
+    """Share columns out among pieces no wider than a console: number → head of the columns of each piece."""
+    bodies = [[cells[column] for cells in rows if cells] for column in range(len(heads))]
+    room = across - max(map(len, names))
+    roomy = (
+        sum(LAYOUT.gap + max(map(len, [head, *cells])) for head, cells in zip(heads, bodies, strict=True)) <= room
+    )
+    pieces: list[dict[int, str]] = [{}]
+    left = room
+    for column, (head, cells) in enumerate(zip(heads, bodies, strict=True)):
+        # Where room is short a head may take more lines than one, but no word of it breaks.
+        widest = max([LAYOUT.head, *map(len, [*head.split(), *cells])])
+        lines = [head] if roomy else textwrap.wrap(head, widest)
+        width = LAYOUT.gap + max(map(len, [*lines, *cells]))
+        if pieces[-1] and width > left:
+            pieces.append({})
+            left = room
+        pieces[-1][column] = "\n".join(lines)
+        left -= width
+    return pieces
 
 
 def print_findings(console: Console, messages: list[str]) -> None:
@@ -162,12 +229,3 @@ def print_findings(console: Console, messages: list[str]) -> None:
     console.print("Findings" if messages else "Findings: none", style="bold")
     for message in messages:
         console.print(f"- {message}", soft_wrap=True)
-
-
-def print_table(console: Console, table: TableForReading) -> None:
-    """Print a table as the report has it."""
-    console.print(table.caption, style="bold")
-    heads = [_head(column.name, column.units) for column in table.columns]
-    # Powers of ten as they are typed, since a console has no raised digits to speak of.
-    rows = {row.name: [cell.replace(" × 10", "e").translate(TYPED) for cell in row.cells] for row in table.rows}
-    _print_columns(console, table.corner, heads, rows)

@@ -9,10 +9,11 @@ import sys
 from cyclopts import CycloptsError
 
 from movingfrf._basics.checks import SolveError
+from movingfrf.commands.root import Status, app
 
-# Loaded for the commands that they hang on the app.
-from movingfrf.commands import profiles, scenarios, studies  # noqa: F401
-from movingfrf.commands.root import DONE, INTERRUPTED, REFUSED, TERMINATED, app
+# Loaded for the commands that they hang on the app, in the order in which a message lists these.
+# isort: off
+from movingfrf.commands import scenarios, studies, profiles  # noqa: F401
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -32,25 +33,25 @@ def main(arguments: list[str] | None = None) -> int:
         app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
     except KeyboardInterrupt:
         print("movingfrf: interrupted, nothing was written", file=sys.stderr)
-        return INTERRUPTED
+        return Status.INTERRUPTED
     except (CycloptsError, ValueError, SolveError) as error:
         print(f"movingfrf: {error}", file=sys.stderr)
-        return REFUSED
+        return Status.REFUSED
     except MemoryError:
         print("movingfrf: the case does not fit into the memory of this machine", file=sys.stderr)
-        return REFUSED
+        return Status.REFUSED
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
         print(f"movingfrf: cannot read or write: {place}{error.strerror or error}", file=sys.stderr)
-        return REFUSED
-    return DONE
+        return Status.REFUSED
+    return Status.DONE
 
 
 def entry() -> None:
     """Run the command as a process; told to end, it leaves nothing half done."""
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(Status.TERMINATED))
     status = main()
-    if status == INTERRUPTED:
+    if status == Status.INTERRUPTED:
         # An interrupt that strikes while a module is being loaded leaves a mark by which Python ends itself with
         # the signal after all, whatever the status.
         sys.stdout.flush()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 from cyclopts import Parameter
 
 from movingfrf._basics.checks import ParameterError
-from movingfrf.commands.console import Stages, plain_console, print_findings, print_table
+from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
 from movingfrf.commands.root import app
 
 if TYPE_CHECKING:
@@ -163,8 +163,7 @@ def profile(
     for sentence in read.steps:
         console.print(f"- {sentence}", soft_wrap=True)
     console.print()
-    for table in tables(found):
-        print_table(console, table)
+    print_tables(console, tables(found))
     print_findings(console, list(found.findings))
     for place in written:
         console.print(f"wrote {place}", soft_wrap=True)

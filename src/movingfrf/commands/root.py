@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
+
 from cyclopts import App
 
 from movingfrf._basics.version import VERSION
 
-# Exit statuses.
-DONE, DEFECT, REFUSED, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
+
+class Status(IntEnum):
+    """Exit statuses. Python itself ends with that of a defect where an error was not foreseen."""
+
+    DONE = 0
+    DEFECT = 1
+    REFUSED = 2  # a file, a value, a case without an answer
+    INTERRUPTED = 130  # 128 + SIGINT, as a shell says it
+    TERMINATED = 143  # 128 + SIGTERM
+
 
 app = App(
     name="movingfrf",

@@ -5,15 +5,21 @@ from __future__ import annotations
 import sys
 import warnings
 from functools import partial
-from importlib.resources import files
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
-from rich.table import Table
 
 from movingfrf._basics.checks import ValidityWarning
-from movingfrf.commands.console import Stages, cell_of, plain_console, print_findings, print_result, print_sections
+from movingfrf.commands.console import (
+    Stages,
+    listing,
+    measures_in_lines,
+    plain_console,
+    print_findings,
+    print_result,
+    print_table,
+)
 from movingfrf.commands.root import app
 
 
@@ -30,8 +36,9 @@ def new(file: Path | None = None, /, *, loads: bool = False, force: bool = False
     force
         Replace the file if it exists and differs.
     """
-    template = "loads.toml" if loads else "scenario.toml"
-    text = files("movingfrf").joinpath("scenarios", "templates", template).read_text(encoding="utf-8")
+    from movingfrf.scenarios.template import template
+
+    text = template("loads" if loads else "scenario")
     if file is None:
         sys.stdout.write(text)
         return
@@ -55,7 +62,8 @@ def check(file: Path, /) -> None:
 
     scenario = read_scenario(file)
     console = plain_console()
-    print_sections(console, described(scenario))
+    for heading, lines in described(scenario):
+        print_table(console, listing(heading, lines))
     if noted := remarks(scenario):
         print_findings(console, noted)
     console.print(f"{file}: in order", soft_wrap=True)
@@ -101,7 +109,8 @@ def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Param
     vehicle = named_vehicle(name)
     if name in CATALOGUE:
         console.print(f"{name}: {CATALOGUE[name].summary}\nsource: {CATALOGUE[name].source}", soft_wrap=True)
-    print_sections(console, described_vehicle(vehicle))
+    for heading, lines in described_vehicle(vehicle):
+        print_table(console, listing(heading, lines))
     if output is not None:
         write_vehicle(vehicle, output)
         console.print(f"wrote {output}", soft_wrap=True)
@@ -152,7 +161,7 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
     if scenario.road is not None:
         console.print(f"Road: {scenario.road.description}\n", soft_wrap=True)
     print_result(console, result, found)
-    console.print(stages.table())
+    print_table(console, stages.table())
     for name in ("report.html", "result.nc", "summary.json"):
         console.print(f"wrote {folder / name}", soft_wrap=True)
 
@@ -187,7 +196,7 @@ def random(
     with stages:
         stages.report("loading", 0.0)
         from movingfrf.metrics.measures import random_measures
-        from movingfrf.reports.random import drawing_frequencies, paths, render
+        from movingfrf.reports.random import drawing_frequencies, paths_in_words, render
         from movingfrf.response.random import random_response
         from movingfrf.results.files import replacing, save, summary_as_json
         from movingfrf.scenarios.reading import read_scenario
@@ -225,7 +234,7 @@ def random(
             title = f"{scenario.name}: random road"
             page = render(result, found, title=title, scenario=scenario.text, drawn=drawn)
             (temporary / "report.html").write_text(page, encoding="utf-8")
-    console.print(f"Spectrum: {result.attrs['spectrum']}; {paths(result)}\n", soft_wrap=True)
+    console.print(f"Spectrum: {result.attrs['spectrum']}; {paths_in_words(result)}\n", soft_wrap=True)
     print_result(console, result, found)
     for name in ("report.html", "random.nc", "summary.json"):
         console.print(f"wrote {folder / name}", soft_wrap=True)
@@ -274,17 +283,7 @@ def measure(
     result = load(file)
     found = assess(result, contacts=contact, dofs=dof, weighting=weighting, slope=slope, since=since)
     console = plain_console()
-    table = Table(box=None, pad_edge=False)
-    for heading, justify in (("", "left"), ("value", "right"), ("unit", "left"), ("by", "left")):
-        table.add_column(heading, justify=justify, no_wrap=True, overflow="fold")  # type: ignore[arg-type]
-    above = ""
-    for taken in found:
-        if taken.quantity != above:
-            table.add_row(taken.quantity, style="bold")
-        units = "" if taken.units == "1" else taken.units
-        table.add_row(f"  {taken.name}", cell_of(taken), units, taken.standard)
-        above = taken.quantity
-    console.print(table)
+    print_table(console, measures_in_lines(found))
     notes = [f"{taken.quantity}, {taken.name}: {taken.note}" for taken in found if taken.note]
     if notes:
         console.print("\nNotes", style="bold")

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from movingfrf.commands.console import Stages, plain_console, print_findings, print_table
+from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
 from movingfrf.commands.root import app
 
 
@@ -63,8 +63,7 @@ def compare(
             }
             for name, text in texts.items():
                 (temporary / name).write_text(text, encoding="utf-8")
-    for table in tables(found):
-        print_table(console, table)
+    print_tables(console, tables(found))
     print_findings(console, findings(found))
     for name in texts:
         console.print(f"wrote {folder / name}", soft_wrap=True)
@@ -106,7 +105,7 @@ def paper(
             stages.report("writing", 0.0)
             write(found, temporary, stages.report)
             written = sorted(file.relative_to(temporary) for file in temporary.rglob("*") if file.is_file())
-    print_table(console, verdict_table(found))
+    print_tables(console, [verdict_table(found)])
     for name in written:
         if len(name.parts) == 1:
             console.print(f"wrote {output / name}", soft_wrap=True)

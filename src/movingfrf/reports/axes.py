@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,29 +20,24 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-# Buckets that a long record is cut into: more than a screen or a sheet of paper resolves.
-BUCKETS = 2000
-
-# Letters that fit beside each other into a legend above a figure, and what a curve's sign takes of them.
-LEGEND_WIDTH, LEGEND_KEY = 118, 7
-
-# Orders of magnitude of a spectral density that are drawn, and the share of the variance its frequency axis shows.
-DRAWN_RANGE, DRAWN_VARIANCE = 1e-7, 0.9999
-
-# A frequency axis ends no earlier than this [Hz], where the record goes as far.
-LEAST_END = 40.0
-
-# Opacity of a spectrum under its fit.
-PALE = 0.6
-
-# Least height of an axis, relative to the values on it: a constant must look constant.
-LEAST_HEIGHT = 0.02
-
 Interval = tuple[float, float]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpectrumStyle:
+    """What of a spectral density is drawn, and how."""
+
+    depth: float = 1e-7  # least over largest density that is drawn [a convention]
+    variance: float = 0.9999  # share of it that the frequency axis shows [a convention, which captions state]
+    least_end: float = 40.0  # end of a frequency axis at the earliest, if the record goes as far [Hz; a convention]
+    opacity: float = 0.6  # of a spectrum under its fit [a convention]
+
+
+SPECTRUM_STYLE = SpectrumStyle()
+
+
 def decimated(
-    x: FloatArray, y: FloatArray, *, buckets: int = BUCKETS, logarithmic: bool = False
+    x: FloatArray, y: FloatArray, *, buckets: int = 2000, logarithmic: bool = False
 ) -> tuple[FloatArray, FloatArray]:
     """Thin out a long series without losing an extreme.
 
@@ -52,7 +48,8 @@ def decimated(
     y : ndarray, shape (sample,)
         Ordinate, in any unit.
     buckets : int
-        Number of consecutive buckets; of each the smallest and the largest value stay, where they are.
+        Number of consecutive buckets; of each the smallest and the largest value stay, where they are. From
+        about 1000 on they are more than a screen or a sheet of paper resolves [a convention].
     logarithmic : bool
         Whether the buckets are equally wide in log x rather than equally full.
 
@@ -99,11 +96,13 @@ def legend_above(ax: Axes) -> Axes:
         `ax`.
     """
     names = ax.get_legend_handles_labels()[1]
+    # Letters that fit beside each other above a figure of the page, and what a curve's sign takes of them.
+    room, key = 118, 7
     if names:
         ax.legend(
             loc="lower left",
             bbox_to_anchor=(0.0, 1.0),
-            ncols=max(1, min(4, LEGEND_WIDTH // (max(map(len, names)) + LEGEND_KEY))),
+            ncols=max(1, min(4, room // (max(map(len, names)) + key))),
             columnspacing=1.5,
             frameon=False,
             borderaxespad=0.2,
@@ -175,7 +174,7 @@ def draw_densities(
         extremes += [float(y.min()), float(y.max())]
         ax.plot(x, y, color=curve.colour, label=curve.name)
     ax.set(xscale="log", yscale="log", xlim=(float(found[0][1][0]), end))
-    depth = np.sqrt(DRAWN_RANGE) if amplitude else DRAWN_RANGE
+    depth = np.sqrt(SPECTRUM_STYLE.depth) if amplitude else SPECTRUM_STYLE.depth
     ax.set_ylim(max(0.7 * min(extremes), depth * max(extremes)), 1.5 * max(extremes))
     _plain_frequencies(ax)
     mark_truncation(ax, truncation)
@@ -197,8 +196,8 @@ def upper_end(frequency: FloatArray, density: FloatArray) -> float:
         The end [Hz].
     """
     share = np.cumsum(density) / density.sum()
-    needed = float(frequency[np.searchsorted(share, DRAWN_VARIANCE).clip(max=len(share) - 1)])
-    return min(max(1.3 * needed, LEAST_END), float(frequency[-1]))
+    needed = float(frequency[np.searchsorted(share, SPECTRUM_STYLE.variance).clip(max=len(share) - 1)])
+    return min(max(1.3 * needed, SPECTRUM_STYLE.least_end), float(frequency[-1]))
 
 
 def draw_fit(fit: IsoFit, colour: str, ax: Axes) -> None:
@@ -247,7 +246,8 @@ def fit_height(ax: Axes) -> None:
     bounds = bounds[np.isfinite(bounds).all(axis=1)]
     low, high = bounds[:, 0].min(), bounds[:, 1].max()
     largest = max(abs(low), abs(high))
-    least = LEAST_HEIGHT * largest if largest else 2.0
+    # A constant must look constant: at least this share of its values high.
+    least = 0.02 * largest if largest else 2.0
     middle, height = (low + high) / 2, max(1.1 * (high - low), least)
     ax.set_ylim(middle - height / 2, middle + height / 2)
     ax.ticklabel_format(axis="y", useOffset=False)

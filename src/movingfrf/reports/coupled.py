@@ -10,11 +10,13 @@ from movingfrf._basics import wording
 from movingfrf._basics.welch import FLAT
 from movingfrf._basics.wording import number, plain
 from movingfrf.guideways.guideway import Guideway
+from movingfrf.metrics.measures import measures
 from movingfrf.reports import plots
 from movingfrf.reports.axes import legend_above
-from movingfrf.reports.curves import contact_curves, distinct, foremost, readable, telling
-from movingfrf.reports.figures import PANEL, SINGLE, STACKED, Illustration, blank, illustrated, panels
+from movingfrf.reports.curves import contact_curves, distinct, foremost, left_out_dofs, readable, telling
+from movingfrf.reports.figures import SIZE, Illustration, blank, illustrated, panels
 from movingfrf.reports.frf import frf_figures
+from movingfrf.reports.tables import Table, measure_tables
 from movingfrf.results.labels import duration_of, speed_in_words
 from movingfrf.roughness.fitting import fit_iso
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-CAPTIONS = {
+COUPLED_CAPTIONS = {
     "force": "Contact forces. The dynamic part is what the roughness adds to the static level; the dynamic load "
     "coefficient is its rms over the static force.",
     "deflection": "Deflections of the road under the contacts, positive down.",
@@ -32,25 +34,16 @@ CAPTIONS = {
     "ISO 2631-1.",
 }
 
-# Window around the largest dynamic force [s].
-ZOOM = 1.5
-
-# Degrees of freedom with panels of their own, and contacts in one figure around the peak.
-MOST_DOFS, MOST_NEIGHBOURS = 8, 2
-
-# Which degrees of freedom are left out where there are many.
-MOVES_ALIKE = " Left out are those with an rms within a tenth of one that is drawn, then the liveliest."
-
 
 def coupled_summary(result: xr.Dataset) -> str:
     """Say in a sentence what was computed."""
     contacts, dofs = result.sizes["contact"], result.sizes["dof"]
-    road = "rough road" if is_rough(result) else "smooth road"
+    surface = "rough road" if is_rough(result) else "smooth road"
     weight = number(1e-3 * float(result.static_load.values.sum()))
     return (
         f"A vehicle of {weight} kN with {wording.count(contacts, 'contact')} and "
         f"{wording.count(dofs, 'degree of freedom', 'degrees of freedom')} travels at {speed_in_words(result)} for "
-        f"{plain(duration_of(result))} s over a {road}; contact forces, deflections of "
+        f"{plain(duration_of(result))} s over a {surface}; contact forces, deflections of "
         "the road and motions of the vehicle were computed together, in the frequency domain, with moving "
         "frequency response functions (moving FRFs)."
     )
@@ -73,10 +66,15 @@ def coupled_method() -> list[str]:
     ]
 
 
+def coupled_tables(result: xr.Dataset) -> list[Table]:
+    """Put the measures of the response into tables."""
+    return measure_tables(result, measures(result), COUPLED_CAPTIONS)
+
+
 def of_coupled(result: xr.Dataset, guideway: Guideway) -> list[Illustration]:
     """Illustrate the response of a vehicle and a guideway."""
     return [
-        _road_figure(result),
+        _roughness_figure(result),
         *frf_figures(result, guideway, _contact_offsets(result)),
         _forces_figure(result),
         *_zoom_figures(result),
@@ -91,9 +89,9 @@ def is_rough(result: xr.Dataset) -> bool:
     return bool(np.ptp(result.roughness.values, axis=0).max() >= FLAT)
 
 
-def _road_figure(result: xr.Dataset) -> Illustration:
-    figure = blank(STACKED + SINGLE + 0.9)
-    above, below = figure.subplots(2, 1, height_ratios=(STACKED, SINGLE))
+def _roughness_figure(result: xr.Dataset) -> Illustration:
+    figure = blank(SIZE.stacked + SIZE.single + 0.9)
+    above, below = figure.subplots(2, 1, height_ratios=(SIZE.stacked, SIZE.single))
     legend_above(plots.roughness(result, above))
     legend_above(plots.roughness_spectrum(result, below))
     caption = (
@@ -109,7 +107,7 @@ def _class_words(result: xr.Dataset) -> str:
         return f"It was made from a spectrum, so none is fitted: {result.attrs['spectrum']}."
     said = []
     for contact in foremost(result):
-        fit = fit_iso(*plots.road_spectrum(result, contact))
+        fit = fit_iso(*plots.elevation_spectrum(result, contact))
         if fit.reason:
             said.append(f"Under contact {contact} no class is fitted: {fit.reason}.")
             continue
@@ -160,22 +158,22 @@ def _peak_force(result: xr.Dataset) -> tuple[float, float, int]:
     return float(peaks[contact]), float(result.time.values[places[contact]]), contact
 
 
-def _zoom_figures(result: xr.Dataset) -> list[Illustration]:
-    """Draw the forces around the largest one, where the record is long enough for that to add anything."""
+def _zoom_figures(result: xr.Dataset, window: float = 1.5) -> list[Illustration]:
+    """Draw the forces in a window [s] around the largest one, if the record is long enough for it to show more."""
     duration = duration_of(result)
     peak, instant, contact = _peak_force(result)
-    if duration <= 2 * ZOOM or not peak:
+    if duration <= 2 * window or not peak:
         return []
-    first = min(max(instant - ZOOM / 2, 0.0), duration - ZOOM)
+    first = min(max(instant - window / 2, 0.0), duration - window)
     chosen = _neighbours(result, contact)
-    figure = blank(SINGLE)
+    figure = blank(SIZE.single)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
-    plots.contact_forces(result, ax, contacts=chosen, interval=(first, first + ZOOM))
+    plots.contact_forces(result, ax, contacts=chosen, interval=(first, first + window))
     for line in ax.lines:
         line.set_linewidth(1.5)
     legend_above(ax)
     caption = (
-        f"The {ZOOM:g} s around the largest dynamic force ({number(1e-3 * peak)} kN under contact {contact}), "
+        f"The {window:g} s around the largest dynamic force ({number(1e-3 * peak)} kN under contact {contact}), "
         "there and under the nearest contact of the same path. They meet the same spot one after the other: look "
         "for the same event with its delay. "
         "Dashed: the static levels."
@@ -183,16 +181,16 @@ def _zoom_figures(result: xr.Dataset) -> list[Illustration]:
     return [illustrated("zoom", "Contact forces around the peak", caption, figure)]
 
 
-def _neighbours(result: xr.Dataset, contact: int) -> list[int]:
-    """Name a contact and the one nearest to it in its path."""
+def _neighbours(result: xr.Dataset, contact: int, most: int = 2) -> list[int]:
+    """Name a contact and those nearest to it in its path, as many as a figure around the peak bears."""
     position, path = result.position.values, result.path.values
     same = np.flatnonzero(path == path[contact])
     nearest = same[np.argsort(np.abs(position[same] - position[contact]), kind="stable")]
-    return sorted(nearest[:MOST_NEIGHBOURS].tolist())
+    return sorted(nearest[:most].tolist())
 
 
 def _force_spectra_figure(result: xr.Dataset) -> Illustration:
-    figure = blank(SINGLE + 0.3)
+    figure = blank(SIZE.single + 0.3)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     legend_above(plots.contact_force_spectra(result, ax))
     caption = (
@@ -224,11 +222,12 @@ def _deflections_figure(result: xr.Dataset) -> Illustration:
     return illustrated("deflections", "Deflections under the contacts", caption, figure)
 
 
-def _accelerations_figure(result: xr.Dataset) -> Illustration:
+def _accelerations_figure(result: xr.Dataset, most: int = 8) -> Illustration:
+    """Draw degrees of freedom, at most so many, each in panels of its own."""
     total = result.sizes["dof"]
     rms = np.sqrt(np.mean(result.acceleration.values**2, axis=0))
-    dofs = telling(rms, result.dof_unit.values.tolist(), MOST_DOFS)
-    figure = blank((PANEL + 0.15) * max(len(dofs), 2) + 0.4)
+    dofs = telling(rms, result.dof_unit.values.tolist(), most)
+    figure = blank((SIZE.panel + 0.15) * max(len(dofs), 2) + 0.4)
     axes = figure.subplots(len(dofs), 2, sharex="col", squeeze=False, width_ratios=(3, 2))
     for row, dof in zip(axes, dofs, strict=True):
         plots.accelerations(result, dof, row[0])
@@ -245,5 +244,5 @@ def _accelerations_figure(result: xr.Dataset) -> Illustration:
         "has its own scale: compare numbers, not heights. Look for the frequencies at which a degree "
         "of freedom moves most."
     )
-    caption += wording.some_of(total, len(dofs), "degrees of freedom") + (MOVES_ALIKE if len(dofs) < total else "")
+    caption += left_out_dofs(total, len(dofs))
     return illustrated("accelerations", "Accelerations of the vehicle", caption, figure)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.wording import evenly_spread
+from movingfrf._basics.wording import evenly_spread, some_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,10 +18,6 @@ if TYPE_CHECKING:
 # Okabe and Ito's palette, distinct under every common colour blindness; its yellow is too pale on white.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 INK, GREY = "#222222", "#6b6b6b"
-
-# Curves that differ by less than this share of their largest value lie on top of each other; motions whose root
-# mean squares differ by less than this share tell the same.
-COINCIDENT, ALIKE = 1e-6, 0.1
 
 
 class Curve(NamedTuple):
@@ -32,7 +28,7 @@ class Curve(NamedTuple):
     colour: str
 
 
-def telling(rms: FloatArray, units: Sequence[str], most: int) -> list[int]:
+def telling(rms: FloatArray, units: Sequence[str], most: int, *, alike: float = 0.1) -> list[int]:
     """Which degrees of freedom to draw where there are more than a figure bears.
 
     Those that move like one before them are left out, then the liveliest: bodies come before wheels.
@@ -45,6 +41,9 @@ def telling(rms: FloatArray, units: Sequence[str], most: int) -> list[int]:
         Unit of each degree of freedom.
     most : int
         Number of degrees of freedom that a figure bears.
+    alike : float
+        Motions whose root mean squares differ by less than this share tell the same [a convention, which
+        `left_out_dofs` states].
 
     Returns
     -------
@@ -60,12 +59,18 @@ def telling(rms: FloatArray, units: Sequence[str], most: int) -> list[int]:
         return list(range(len(rms)))
     chosen: list[int] = []
     for dof, size in enumerate(rms):
-        if all(units[dof] != units[one] or abs(size - rms[one]) > ALIKE * rms[one] for one in chosen):
+        if all(units[dof] != units[one] or abs(size - rms[one]) > alike * rms[one] for one in chosen):
             chosen.append(dof)
     return sorted(sorted(chosen, key=lambda dof: rms[dof])[:most])
 
 
-def distinct(curves: Sequence[Curve], values: FloatArray) -> list[Curve]:
+def left_out_dofs(total: int, drawn: int) -> str:
+    """Say in a caption how many degrees of freedom are drawn, and which `telling` left out."""
+    words = " Left out are those with an rms within a tenth of one that is drawn, then the liveliest."
+    return some_of(total, drawn, "degrees of freedom") + (words if drawn < total else "")
+
+
+def distinct(curves: Sequence[Curve], values: FloatArray, *, coincident: float = 1e-6) -> list[Curve]:
     """Merge curves that lie on top of each other: the first one stays, and says which others it stands for.
 
     Parameters
@@ -74,6 +79,9 @@ def distinct(curves: Sequence[Curve], values: FloatArray) -> list[Curve]:
         The curves.
     values : ndarray, shape (sample, channel)
         What is drawn, in any unit.
+    coincident : float
+        Curves that differ by less than this share of their largest value lie on top of each other [1e-9, above
+        rounding, to 1e-3, below the width of a line].
 
     Returns
     -------
@@ -85,7 +93,7 @@ def distinct(curves: Sequence[Curve], values: FloatArray) -> list[Curve]:
         mine = values[:, curve.column]
         for group in groups:
             other = values[:, group[0].column]
-            if np.abs(mine - other).max(initial=0.0) <= COINCIDENT * np.abs(other).max(initial=0.0):
+            if np.abs(mine - other).max(initial=0.0) <= coincident * np.abs(other).max(initial=0.0):
                 group.append(curve)
                 break
         else:

@@ -6,6 +6,7 @@ import io
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from movingfrf.reports.curves import GREY, INK
@@ -15,11 +16,20 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-# Width of a figure [inch], and height of its axes in the three ways they are stacked.
-WIDTH, SINGLE, STACKED, PANEL = 9.6, 3.4, 1.75, 1.55
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FigureSize:
+    """Sizes of the page's figures [inch], conventions: their width, and the height of axes as they are stacked."""
 
-# The look of the figures, on top of matplotlib's defaults and never on top of a user's own settings.
-STYLE: dict[Any, Any] = {
+    width: float = 9.6
+    single: float = 3.4  # alone in a figure
+    stacked: float = 1.75  # above or below others
+    panel: float = 1.55  # one of many that share an axis
+
+
+SIZE = FigureSize()
+
+# The look of the page's figures, on top of matplotlib's defaults and never on top of a user's own settings.
+PAGE_STYLE: dict[Any, Any] = {
     "axes.edgecolor": GREY,
     "axes.grid": True,
     "axes.labelcolor": INK,
@@ -54,7 +64,7 @@ def drawing() -> Iterator[None]:
 
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(STYLE)
+        matplotlib.rcParams.update(PAGE_STYLE)
         yield
 
 
@@ -62,7 +72,7 @@ def blank(height: float) -> Figure:
     """Make an empty figure of the page's width and some height [inch]."""
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(WIDTH, height), layout="constrained")
+    return Figure(figsize=(SIZE.width, height), layout="constrained")
 
 
 def drawn_svg(figure: Figure, key: str) -> str:
@@ -122,7 +132,7 @@ def illustrated(key: str, heading: str, caption: str, figure: Figure) -> Illustr
 
 def panels(count: int, draw: Callable[[int, Axes], object], colours: Sequence[str], names: Sequence[str]) -> Figure:
     """Panels of equal height below each other, on common axes."""
-    figure = blank(max(PANEL * count, SINGLE - 0.4) + 0.5)
+    figure = blank(max(SIZE.panel * count, SIZE.single - 0.4) + 0.5)
     axes = figure.subplots(count, 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     for panel, ax in enumerate(axes):
         draw(panel, ax)

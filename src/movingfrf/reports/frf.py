@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from movingfrf._basics.welch import spectral_density
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.reports.axes import fit_height, legend_above, mark_truncation, upper_end
 from movingfrf.reports.curves import INK, PALETTE
-from movingfrf.reports.figures import SINGLE, STACKED, Illustration, blank, illustrated
+from movingfrf.reports.figures import SIZE, Illustration, blank, illustrated
 from movingfrf.results.labels import time_step_of
 
 if TYPE_CHECKING:
@@ -21,15 +22,22 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-# Frequencies of the moving FRFs: how many, how far beyond the truncation, and at least up to there [Hz].
-FRF_POINTS, FRF_BEYOND, FRF_LEAST = 1500, 1.3, 40.0
-# Where nothing is left out: the moving FRF is drawn until it stays below this share of its largest amplitude.
-FRF_SMALL = 0.01
-# Distance of the line on which it is evaluated from the real axis, where an undamped road is infinite.
-FRF_DECAY = 1e-6
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrfAxes:
+    """What of moving FRFs is drawn."""
 
-# Orders of magnitude of a moving FRF that are drawn.
-FRF_RANGE = 1e-5
+    points: int = 1500  # frequencies [500 to 5000: phases are followed, and the page stays small]
+    beyond: float = 1.3  # end over the truncation, or over where it has become small [a convention]
+    least: float = 40.0  # end of the frequency axis at the earliest [Hz; a convention]
+    # Where nothing is left out: drawn until it stays below this share of its largest amplitude [a convention].
+    small: float = 0.01
+    # Distance of the line on which it is evaluated from the real axis, where an undamped guideway is infinite, over
+    # the highest frequency [1e-9 to 1e-5: the amplitudes beside a resonance stay].
+    decay: float = 1e-6
+    depth: float = 1e-5  # least over largest amplitude that is drawn [a convention]
+
+
+FRF_AXES = FrfAxes()
 
 
 def frf_figures(result: xr.Dataset, guideway: Guideway, offsets: list[float]) -> list[Illustration]:
@@ -37,17 +45,17 @@ def frf_figures(result: xr.Dataset, guideway: Guideway, offsets: list[float]) ->
     speed, truncation = result.attrs["speed"], result.attrs.get("truncation", 0.0)
 
     def frf(frequency: FloatArray, ahead: Sequence[float]) -> ComplexArray:
-        omega = 2 * np.pi * (frequency - 1j * FRF_DECAY * frequency[-1])
+        omega = 2 * np.pi * (frequency - 1j * FRF_AXES.decay * frequency[-1])
         return guideway.moving_frf(np.asarray(ahead), speed, omega)
 
     highest = _frf_end(result, frf)
-    frequency = np.linspace(0.0, highest, FRF_POINTS)
+    frequency = np.linspace(0.0, highest, FRF_AXES.points)
     values = frf(frequency, offsets)
     largest = np.abs(values).max(axis=0)
-    seen = np.flatnonzero(largest >= FRF_RANGE * largest.max())
+    seen = np.flatnonzero(largest >= FRF_AXES.depth * largest.max())
     values, offsets = values[:, seen], [offsets[place] for place in seen]
-    figure = blank(SINGLE + STACKED + 1.2)
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(SINGLE, STACKED + 0.5))
+    figure = blank(SIZE.single + SIZE.stacked + 1.2)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(SIZE.single, SIZE.stacked + 0.5))
     mark = truncation if truncation < highest else None
     legend_above(frf_amplitude(frequency, values, offsets, above, truncation=mark))
     frf_phase(frequency, values, offsets, below, truncation=mark)
@@ -60,7 +68,7 @@ def _frf_end(result: xr.Dataset, frf: Callable[[FloatArray, Sequence[float]], Co
     """Highest frequency to draw [Hz]: where deflections under contacts end, a truncation, or the FRF itself."""
     step, truncation = time_step_of(result), result.attrs.get("truncation", 0.0)
     nyquist = 0.5 / step
-    kept = max(FRF_BEYOND * truncation, FRF_LEAST) if 0 < truncation < nyquist else nyquist
+    kept = max(FRF_AXES.beyond * truncation, FRF_AXES.least) if 0 < truncation < nyquist else nyquist
     if "contact_force" in result:
         spectra = (spectral_density(deflection, step) for deflection in result.deflection.values.T)
         ends = [upper_end(*spectrum) for spectrum in spectra if spectrum[0].size]
@@ -68,10 +76,12 @@ def _frf_end(result: xr.Dataset, frf: Callable[[FloatArray, Sequence[float]], Co
             return min(max(ends), kept)
     if kept < nyquist:
         return kept
-    frequency = np.linspace(0.0, nyquist, FRF_POINTS)
+    frequency = np.linspace(0.0, nyquist, FRF_AXES.points)
     amplitude = np.abs(frf(frequency, [0.0])[:, 0])
-    needed = frequency[np.flatnonzero(amplitude >= FRF_SMALL * amplitude.max())[-1]] if amplitude.any() else 0.0
-    return float(min(max(FRF_BEYOND * needed, FRF_LEAST), nyquist))
+    needed = (
+        frequency[np.flatnonzero(amplitude >= FRF_AXES.small * amplitude.max())[-1]] if amplitude.any() else 0.0
+    )
+    return float(min(max(FRF_AXES.beyond * needed, FRF_AXES.least), nyquist))
 
 
 def _frf_words(values: ComplexArray, offsets: list[float], truncation: float | None, beyond: str) -> str:
@@ -118,7 +128,7 @@ def frf_amplitude(
         largest = float(amplitude.max())
         ax.set_yscale("log")
         ax.minorticks_off()
-        ax.set_ylim(max(0.5 * float(amplitude[amplitude > 0].min()), FRF_RANGE * largest), 2 * largest)
+        ax.set_ylim(max(0.5 * float(amplitude[amplitude > 0].min()), FRF_AXES.depth * largest), 2 * largest)
     else:
         fit_height(ax)
     ax.set_ylabel("amplitude [µm/kN]")
@@ -151,7 +161,7 @@ def frf_phase(
     from matplotlib.ticker import MultipleLocator
 
     amplitude = np.abs(frf)
-    seen = amplitude >= FRF_RANGE * amplitude.max()
+    seen = amplitude >= FRF_AXES.depth * amplitude.max()
     phase = np.where(seen, np.degrees(np.unwrap(np.angle(frf), axis=0)), np.nan)
     for values, style in zip(phase.T, _offset_styles(offsets), strict=True):
         ax.plot(frequency, values, **style)

@@ -12,7 +12,7 @@ from movingfrf.guideways.guideway import Guideway
 from movingfrf.reports import plots
 from movingfrf.reports.axes import legend_above
 from movingfrf.reports.curves import load_curves, point_curves
-from movingfrf.reports.figures import SINGLE, Illustration, blank, illustrated
+from movingfrf.reports.figures import SIZE, Illustration, blank, illustrated
 from movingfrf.reports.frf import frf_figures
 from movingfrf.reports.tables import Column, Row, Table
 from movingfrf.results.labels import duration_of, speed_in_words
@@ -108,7 +108,7 @@ def _load_offsets(result: xr.Dataset) -> list[float]:
 
 
 def _prescribed_figure(result: xr.Dataset) -> Illustration:
-    figure = blank(SINGLE)
+    figure = blank(SIZE.single)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     legend_above(plots.prescribed_forces(result, ax))
     caption = "The forces on the road, as prescribed; a force that is not zero at t = 0 is switched on there."
@@ -117,7 +117,7 @@ def _prescribed_figure(result: xr.Dataset) -> Illustration:
 
 
 def _point_deflections_figure(result: xr.Dataset) -> Illustration:
-    figure = blank(SINGLE)
+    figure = blank(SIZE.single)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     legend_above(plots.deflections(result, ax))
     caption = (
@@ -129,7 +129,7 @@ def _point_deflections_figure(result: xr.Dataset) -> Illustration:
 
 
 def _loaded_spectra_figure(result: xr.Dataset) -> Illustration:
-    figure = blank(2 * SINGLE)
+    figure = blank(2 * SIZE.single)
     above, below = figure.subplots(2, 1)
     legend_above(plots.prescribed_force_spectra(result, above))
     legend_above(plots.deflection_spectra(result, below))

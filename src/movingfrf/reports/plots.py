@@ -10,7 +10,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.welch import FEWEST_SAMPLES, FLAT, LONGEST_STRETCH, SEGMENTS, welch
 from movingfrf.reports.axes import (
-    PALE,
+    SPECTRUM_STYLE,
     Interval,
     decimated,
     draw_classes,
@@ -287,15 +287,15 @@ def roughness_spectrum(result: xr.Dataset, ax: Axes) -> Axes:
     ends = np.array([low, high])
     lowest, highest = IsoRoad.of_class("A").density(ends)[1], IsoRoad.of_class("H").density(ends)[1]
     for curve in distinct(contact_curves(result, foremost(result)), result.roughness.values):
-        n, density = road_spectrum(result, curve.column)
+        n, density = elevation_spectrum(result, curve.column)
         inside = (n >= low) & (n <= high) & (density > 0)
         if not inside.any():
             continue
         n, density = decimated(n[inside], density[inside], logarithmic=True)
-        ax.plot(n, density, color=curve.colour, alpha=PALE, label=f"under {curve.name}")
+        ax.plot(n, density, color=curve.colour, alpha=SPECTRUM_STYLE.opacity, label=f"under {curve.name}")
         highest = max(highest, float(density.max()))
         if "spectrum" not in result.attrs:
-            draw_fit(fit_iso(*road_spectrum(result, curve.column)), curve.colour, ax)
+            draw_fit(fit_iso(*elevation_spectrum(result, curve.column)), curve.colour, ax)
     ax.set(xscale="log", yscale="log", xlim=(low, high), ylim=(lowest / 30, 5 * highest))
     ax.minorticks_off()
     draw_classes(ax, ends)
@@ -306,7 +306,7 @@ def roughness_spectrum(result: xr.Dataset, ax: Axes) -> Axes:
     return ax
 
 
-def road_spectrum(result: xr.Dataset, contact: int) -> tuple[FloatArray, FloatArray]:
+def elevation_spectrum(result: xr.Dataset, contact: int) -> tuple[FloatArray, FloatArray]:
     """Estimate the one-sided spectrum of the elevation that a contact saw.
 
     Parameters

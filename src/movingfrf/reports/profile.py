@@ -10,9 +10,9 @@ from movingfrf._basics import wording
 from movingfrf._basics.version import VERSION
 from movingfrf._basics.wording import number, plain
 from movingfrf.metrics.profile import PathDescription, ProfileDescription
-from movingfrf.reports.axes import PALE, decimated, draw_classes, draw_fit, legend_above
+from movingfrf.reports.axes import SPECTRUM_STYLE, decimated, draw_classes, draw_fit, legend_above
 from movingfrf.reports.curves import PALETTE
-from movingfrf.reports.figures import SINGLE, Illustration, blank, drawing, illustrated
+from movingfrf.reports.figures import SIZE, Illustration, blank, drawing, illustrated
 from movingfrf.reports.page import rendered
 from movingfrf.reports.tables import Column, Row, Setting, Table
 from movingfrf.roughness.spectra.iso import IsoRoad
@@ -22,20 +22,7 @@ if TYPE_CHECKING:
 
 
 # Spatial frequencies of the figures [cycle/m].
-DRAWN = (0.005, 10.0)
-
-METHOD = (
-    "Spectra by Welch's method: half-overlapping pieces of at most 400 m, each freed of its trend, Hann window; "
-    "one-sided, without the three lowest lines. The fit is a straight line in logarithms through the mean "
-    "densities of the bands of ISO 8608 (octaves, thirds, twelfths) from 0.011 to 2.83 cycle/m, or that part of it "
-    "in which there is content: not beyond a place where the density falls to a quarter of the line. The class is "
-    "that of the fit with waviness 2.",
-    "IRI: the golden car at 80 km/h over the profile averaged over 250 mm (ASTM E1926), mean rectified suspension "
-    "speed over speed; segments from the first station on, what is left at the end left out.",
-    "Coherence: magnitude squared of the cross-spectrum over the product of both spectra, each summed over the "
-    "bands of ISO 8608. It is not zero even of paths without anything in common, but about one over the number of "
-    "lines of all pieces that were summed: short profiles show too much of it.",
-)
+DRAWN_BAND = (0.005, 10.0)
 
 
 def tables(found: ProfileDescription) -> list[Table]:
@@ -147,8 +134,24 @@ def render(found: ProfileDescription, *, understood: str, title: str) -> str:
         steps=found.profile.steps,
         tables=tables(found),
         figures=figures,
-        method=METHOD,
+        method=_method(),
     )
+
+
+def _method() -> list[str]:
+    """Say how it was computed."""
+    return [
+        "Spectra by Welch's method: half-overlapping pieces of at most 400 m, each freed of its trend, Hann "
+        "window; one-sided, without the three lowest lines. The fit is a straight line in logarithms through the "
+        "mean densities of the bands of ISO 8608 (octaves, thirds, twelfths) from 0.011 to 2.83 cycle/m, or that "
+        "part of it in which there is content: not beyond a place where the density falls to a quarter of the "
+        "line. The class is that of the fit with waviness 2.",
+        "IRI: the golden car at 80 km/h over the profile averaged over 250 mm (ASTM E1926), mean rectified "
+        "suspension speed over speed; segments from the first station on, what is left at the end left out.",
+        "Coherence: magnitude squared of the cross-spectrum over the product of both spectra, each summed over "
+        "the bands of ISO 8608. It is not zero even of paths without anything in common, but about one over the "
+        "number of lines of all pieces that were summed: short profiles show too much of it.",
+    ]
 
 
 def _lead(found: ProfileDescription) -> str:
@@ -189,7 +192,7 @@ def _figures(found: ProfileDescription) -> list[Illustration]:
 
 
 def _elevations(found: ProfileDescription) -> Illustration:
-    figure = blank(SINGLE)
+    figure = blank(SIZE.single)
     ax = figure.subplots()
     columns = found.profile.columns
     for path, colour in zip(found.paths, _colours(found), strict=True):
@@ -204,9 +207,9 @@ def _elevations(found: ProfileDescription) -> Illustration:
 
 
 def _spectra(found: ProfileDescription) -> Illustration:
-    figure = blank(SINGLE + 0.6)
+    figure = blank(SIZE.single + 0.6)
     ax = figure.subplots()
-    ends = np.array(DRAWN)
+    ends = np.array(DRAWN_BAND)
     low = float(IsoRoad.of_class("A").density(np.array([10.0]))[0])
     high = float(IsoRoad.of_class("H").density(np.array([0.011]))[0])
     for path, colour in zip(found.paths, _colours(found), strict=True):
@@ -215,10 +218,10 @@ def _spectra(found: ProfileDescription) -> Illustration:
         if not inside.any():
             continue
         n, density = decimated(n[inside], density[inside], buckets=400, logarithmic=True)
-        ax.plot(n, density, color=colour, alpha=PALE, label=f"path {_name(path)}")
+        ax.plot(n, density, color=colour, alpha=SPECTRUM_STYLE.opacity, label=f"path {_name(path)}")
         draw_fit(path.fit, colour, ax)
         low, high = min(low, float(density.min())), max(high, float(density.max()))
-    ax.set(xscale="log", yscale="log", xlim=DRAWN, ylim=(max(low, 1e-12 * high) / 3, 3 * high))
+    ax.set(xscale="log", yscale="log", xlim=DRAWN_BAND, ylim=(max(low, 1e-12 * high) / 3, 3 * high))
     ax.minorticks_off()
     draw_classes(ax, np.array([0.01, 10.0]))
     ax.set_xlabel("spatial frequency [cycle/m]")
@@ -233,7 +236,7 @@ def _spectra(found: ProfileDescription) -> Illustration:
 
 
 def _index(found: ProfileDescription) -> Illustration:
-    figure = blank(SINGLE)
+    figure = blank(SIZE.single)
     ax = figure.subplots()
     for path, colour in zip(found.paths, _colours(found), strict=True):
         for n, (span, each) in enumerate(path.indices.items()):
@@ -256,10 +259,10 @@ def _stairs(ax: Axes, start: float, span: float, each: np.ndarray, colour: str, 
 
 def _coherence(found: ProfileDescription) -> Illustration:
     assert found.coherence is not None
-    figure = blank(SINGLE)
+    figure = blank(SIZE.single)
     ax = figure.subplots()
     ax.plot(*found.coherence, color=PALETTE[0], marker="o", markersize=3)
-    ax.set(xscale="log", xlim=DRAWN, ylim=(0.0, 1.05))
+    ax.set(xscale="log", xlim=DRAWN_BAND, ylim=(0.0, 1.05))
     ax.set_xlabel("spatial frequency [cycle/m]")
     ax.set_ylabel("coherence γ²")
     first, last = found.paths[0], found.paths[-1]

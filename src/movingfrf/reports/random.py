@@ -11,10 +11,9 @@ import numpy as np
 from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import number, plain
-from movingfrf.reports.axes import DRAWN_RANGE, decimated, draw_classes, legend_above
-from movingfrf.reports.coupled import MOVES_ALIKE
-from movingfrf.reports.curves import PALETTE, Curve, contact_curves, distinct, readable, telling
-from movingfrf.reports.figures import PANEL, SINGLE, Illustration, blank, drawing, illustrated
+from movingfrf.reports.axes import SPECTRUM_STYLE, decimated, draw_classes, legend_above
+from movingfrf.reports.curves import PALETTE, Curve, contact_curves, distinct, left_out_dofs, readable, telling
+from movingfrf.reports.figures import SIZE, Illustration, blank, drawing, illustrated
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Setting, measure_tables
 from movingfrf.results.labels import Measure, speed_in_words
@@ -26,10 +25,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-# Frequencies of the figures.
+# Frequencies of the figures [600 to 5000: more than a screen resolves, fewer than make a page heavy].
 DRAWN_FREQUENCIES = 1200
 
-CAPTIONS = {
+RANDOM_CAPTIONS = {
     "force": "Contact forces: the static one, and the dynamic one that the roughness adds.",
     "load": "Total contact forces, static and dynamic, and what they do to the road. The dynamic load coefficient "
     "is the rms of the dynamic force over the static one.",
@@ -83,7 +82,7 @@ def render(
         findings=[f"{message[:1].upper()}{message[1:].rstrip('.')}." for message in messages],
         no_findings="No findings: contact is unlikely to be lost within the exposure, the speed is well below "
         "critical, and the forces have no content of weight at the end of the spectrum's band.",
-        tables=measure_tables(result, found, CAPTIONS),
+        tables=measure_tables(result, found, RANDOM_CAPTIONS),
         figures=figures,
         method=_method(),
         scenario=scenario,
@@ -107,7 +106,7 @@ def drawing_frequencies(result: xr.Dataset) -> FloatArray:
     return np.union1d(lines, np.geomspace(lines[0], lines[-1], DRAWN_FREQUENCIES))
 
 
-def paths(result: xr.Dataset) -> str:
+def paths_in_words(result: xr.Dataset) -> str:
     """Say what the paths of a random road have in common.
 
     Parameters
@@ -148,7 +147,7 @@ def _settings(result: xr.Dataset) -> list[Setting]:
             else "",
         ),
         Setting("Spectrum (SI units)", attrs["spectrum"], wide=True),
-        Setting("Paths", paths(result), wide=True),
+        Setting("Paths", paths_in_words(result), wide=True),
         Setting("Road (SI units)", attrs["guideway"], wide=True),
     ]
 
@@ -174,7 +173,7 @@ def _method() -> list[str]:
 
 def _figure(result: xr.Dataset, quantity: str, curves: Sequence[Curve], scale: float, label: str) -> Figure:
     """Draw amplitude densities over frequency, and below them which share of the variance lies below it."""
-    figure = blank(SINGLE + PANEL)
+    figure = blank(SIZE.single + SIZE.panel)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(5, 3))
     frequency, densities = result.frequency.values, result[f"{quantity}_density"].values
     lowest, highest = np.inf, 0.0
@@ -186,7 +185,7 @@ def _figure(result: xr.Dataset, quantity: str, curves: Sequence[Curve], scale: f
             above.plot(*_thinned(frequency, amplitude), color=curve.colour, label=curve.name)
             below.plot(*_thinned(frequency, 100 * share / share[-1]), color=curve.colour)
     if highest:
-        above.set(yscale="log", ylim=(max(lowest / 1.5, highest * np.sqrt(DRAWN_RANGE)), 1.5 * highest))
+        above.set(yscale="log", ylim=(max(lowest / 1.5, highest * np.sqrt(SPECTRUM_STYLE.depth)), 1.5 * highest))
     above.set_ylabel(label)
     below.set(ylim=(0, 101), xlabel="frequency [Hz]", ylabel="variance below [%]")
     _logarithmic(below, frequency)
@@ -251,14 +250,13 @@ def _motions(result: xr.Dataset) -> list[Illustration]:
         caption = (
             "Amplitude spectral density of the accelerations, and the share of their variance below a frequency."
         )
-        caption += wording.some_of(dofs.size, len(curves), "degrees of freedom")
-        caption += MOVES_ALIKE if len(curves) < dofs.size else ""
+        caption += left_out_dofs(dofs.size, len(curves))
         found.append(illustrated(f"motion-{unit}", heading, caption, figure))
     return found
 
 
 def _surface(result: xr.Dataset) -> Illustration:
-    figure = blank(SINGLE)
+    figure = blank(SIZE.single)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     n, speed = result.frequency.values / result.attrs["speed"], result.attrs["speed"]
     ends = n[[0, -1]]
@@ -268,7 +266,7 @@ def _surface(result: xr.Dataset) -> Illustration:
         ax.plot(*_thinned(n, seen), color=curve.colour, label=curve.name)
         lowest, highest = min(lowest, seen[-1]), max(highest, float(seen.max()))
     ax.set(yscale="log", xlabel="spatial frequency [cycle/m]")
-    ax.set_ylim(max(lowest / 10, 1e-3 * DRAWN_RANGE * highest), 5 * highest)
+    ax.set_ylim(max(lowest / 10, 1e-3 * SPECTRUM_STYLE.depth * highest), 5 * highest)
     _logarithmic(ax, n)
     draw_classes(ax, ends)
     ax.set_ylabel("spectral density $G_d$ [m³]")

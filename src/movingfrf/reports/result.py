@@ -9,12 +9,11 @@ import numpy as np
 
 from movingfrf._basics.wording import number, plain
 from movingfrf.guideways.guideway import Guideway
-from movingfrf.metrics.measures import measures
-from movingfrf.reports.coupled import CAPTIONS, coupled_method, coupled_summary, of_coupled
+from movingfrf.reports.coupled import coupled_method, coupled_summary, coupled_tables, of_coupled
 from movingfrf.reports.figures import drawing
 from movingfrf.reports.loaded import loaded_method, loaded_summary, loaded_tables, of_loads
 from movingfrf.reports.page import page
-from movingfrf.reports.tables import Setting, measure_tables
+from movingfrf.reports.tables import Setting
 from movingfrf.results.labels import duration_of, time_step_of
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ def render(result: xr.Dataset, *, guideway: Guideway, scenario_text: str = "", t
         settings=_settings(result),
         findings=_findings(result),
         no_findings=_no_findings(coupled),
-        tables=measure_tables(result, measures(result), CAPTIONS) if coupled else loaded_tables(result),
+        tables=coupled_tables(result) if coupled else loaded_tables(result),
         figures=figures,
         method=coupled_method() if coupled else loaded_method(),
         scenario=scenario_text or result.attrs.get("scenario", ""),

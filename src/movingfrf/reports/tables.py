@@ -30,14 +30,15 @@ class Setting(NamedTuple):
 
 
 class Column(NamedTuple):
-    """Head of a column."""
+    """Head of a column, and whether words stand below it rather than numbers."""
 
     name: str
     units: str
+    words: bool = False
 
 
 class Row(NamedTuple):
-    """One row of a table, with the colour of its curves."""
+    """One row of a table, with the colour of its curves; without cells the heading of the rows below it."""
 
     name: str
     cells: list[str]

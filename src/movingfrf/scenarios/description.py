@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,11 +23,16 @@ from movingfrf.vehicles.vehicle import Vehicle
 # A section: its heading and its lines of name and value.
 Section = tuple[str, list[tuple[str, str]]]
 
-# Less than this share of critical damping, and a longer footprint [m], are worth a remark.
-LITTLE_DAMPING, LONG_FOOTPRINT = 0.02, 1.0
 
-# Words and contacts of a list that are written out, and the difference between poles that count as one.
-MOST_WORDS, MOST_CONTACTS, SAME_POLE = 14, 12, 1e-6
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unusual:
+    """What of a vehicle is worth a remark [conventions]."""
+
+    damping: float = 0.02  # share of critical damping below which a vibration takes long to settle
+    footprint: float = 1.0  # length beyond that of any tyre [m]
+
+
+UNUSUAL = Unusual()
 
 
 def described(scenario: Scenario) -> list[Section]:
@@ -77,13 +83,13 @@ def remarks(scenario: Scenario) -> list[str]:
             f"the vehicle vibrates at up to {fastest:.4g} Hz, but a step of {journey.time_step:g} s resolves only "
             f"{nyquist:.4g} Hz"
         )
-    if frequencies.size and ratios.min() < LITTLE_DAMPING:
+    if frequencies.size and ratios.min() < UNUSUAL.damping:
         found.append(
             f"a vibration of the vehicle at {frequencies[ratios.argmin()]:.3g} Hz has {100 * ratios.min():.2g} % "
             "of critical damping: it takes long to settle, and its size depends on that number"
         )
     longest = max((contact.footprint for contact in vehicle.contacts), default=0.0)
-    if longest > LONG_FOOTPRINT:
+    if longest > UNUSUAL.footprint:
         found.append(f"a footprint of {longest:g} m is longer than that of any tyre")
     return found
 
@@ -130,15 +136,17 @@ def described_vehicle(vehicle: Vehicle) -> list[Section]:
     ]
 
 
-def _enumerated(words: Sequence[str]) -> str:
-    """Words with commas between them, the middle ones left out where there are many."""
-    if len(words) <= MOST_WORDS:
+def _enumerated(words: Sequence[str], most: int = 14) -> str:
+    """Words with commas between them, at most so many: the middle ones are left out."""
+    if len(words) <= most:
         return ", ".join(words)
-    return f"{', '.join(words[: MOST_WORDS - 2])}, …, {words[-1]} ({len(words)} in all)"
+    return f"{', '.join(words[: most - 2])}, …, {words[-1]} ({len(words)} in all)"
 
 
-def _contacts(vehicle: Vehicle, loads: FloatArray, sags: FloatArray | None = None) -> list[tuple[str, str]]:
-    """One line per contact: name and number, then where it is, what it carries and how it is held."""
+def _contacts(
+    vehicle: Vehicle, loads: FloatArray, sags: FloatArray | None = None, most: int = 12
+) -> list[tuple[str, str]]:
+    """One line per contact, at most so many: name and number, where it is, what it carries and how it is held."""
     lines = []
     for number, (contact, load) in enumerate(zip(vehicle.contacts, loads, strict=True)):
         place = f"at {contact.position:g} m" + (f", {contact.across:+g} m across" if contact.across else "")
@@ -151,17 +159,20 @@ def _contacts(vehicle: Vehicle, loads: FloatArray, sags: FloatArray | None = Non
         path = f", path {contact.path}" if contact.path else ""
         name = f"{number} {contact.name}".rstrip()
         lines.append((name, f"{place}{path}, {load / 1e3:.2f} kN{sag}, {held}{patch}{cams}"))
-    if len(lines) <= MOST_CONTACTS:
+    if len(lines) <= most:
         return lines
-    left_out = len(lines) - MOST_CONTACTS + 1
-    return [*lines[: MOST_CONTACTS - 2], ("…", f"{left_out} more"), lines[-1]]
+    left_out = len(lines) - most + 1
+    return [*lines[: most - 2], ("…", f"{left_out} more"), lines[-1]]
 
 
-def _vibrations(vehicle: Vehicle) -> list[tuple[str, str]]:
-    """One line per natural frequency; the equal ones of equal cars share a line."""
+def _vibrations(vehicle: Vehicle, same: float = 1e-6) -> list[tuple[str, str]]:
+    """One line per natural frequency; the equal ones of equal cars share a line.
+
+    Poles that differ by less than the share `same` are one [1e-10 to 1e-5: rounding to different wheels of a car].
+    """
     groups: list[list[Mode]] = []
     for mode in vehicle_modes(vehicle):
-        if groups and abs(mode.pole - groups[-1][0].pole) < SAME_POLE * abs(mode.pole):
+        if groups and abs(mode.pole - groups[-1][0].pole) < same * abs(mode.pole):
             groups[-1].append(mode)
         else:
             groups.append([mode])

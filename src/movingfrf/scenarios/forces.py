@@ -11,9 +11,6 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.smooth import smooth_step
 
-# Sine waves that one force may be made of.
-MOST_WAVES = 100_000
-
 # A force over time [s] → [N].
 History = Callable[[FloatArray], FloatArray]
 
@@ -138,12 +135,13 @@ def random_sum(
     ValueError
         If the band is empty, a number is not positive, or a time is negative or out of order.
     """
+    most_waves = 100_000  # a limit of memory and patience [a convention]
     with checking() as check:
         check.positive("rms", rms, "N")
         check.not_negative("lowest", lowest, "Hz")
         check.positive("highest", highest, "Hz")
-        if check.whole("count", count, least=1) > MOST_WAVES:
-            check.refuse("count", f"must be at most {MOST_WAVES}, got {shown(count)}")
+        if check.whole("count", count, least=1) > most_waves:
+            check.refuse("count", f"must be at most {most_waves}, got {shown(count)}")
         check.whole("seed", seed)
         if not check.faults and lowest >= highest:
             check.refuse("highest", f"must be above lowest, {lowest:g} Hz, got {highest:g} Hz")

@@ -19,11 +19,6 @@ from movingfrf.vehicles.catalogue import catalogue
 from movingfrf.vehicles.files import read_vehicle
 from movingfrf.vehicles.vehicle import Vehicle
 
-WITH_VEHICLE, WITH_LOADS = {"guideway", "vehicle", "roughness", "run"}, {"guideway", "loads", "run"}
-
-# Stands for a journey's interval where the journey itself is refused, so that the road is checked all the same.
-SOME_INTERVAL = (0.0, 1.0)
-
 
 def read_scenario(file: str | Path) -> Scenario:
     """Read and check a scenario file.
@@ -144,7 +139,7 @@ class _Builder:
     def scenario(self, tables: dict[str, Any], name: str, text: str) -> Scenario | None:
         """Build everything; None if that was not possible, with the reasons in `faults`."""
         with_loads = "loads" in tables
-        wanted = WITH_LOADS if with_loads else WITH_VEHICLE
+        wanted = {"guideway", "run", *(["loads"] if with_loads else ["vehicle", "roughness"])}
         for key in ("vehicle", "roughness"):
             if with_loads and key in tables:
                 self.faults.append(Fault(key, "and [loads] exclude each other: forces are computed or prescribed"))
@@ -166,7 +161,8 @@ class _Builder:
                 name=name, text=text, guideway=guideway, journey=journey, loads=found, folder=self.folder
             )
         vehicle = self.section(tables, "vehicle", "vehicle")
-        interval = SOME_INTERVAL
+        # Some interval, so that the road is checked even where the journey itself is refused.
+        interval = (0.0, 1.0)
         if journey is not None and vehicle is not None:
             interval = journey.interval(vehicle)
             if self._attempt("run:", lambda: spectral_grid(journey, vehicle)) is False:

@@ -119,13 +119,13 @@ def shaped(shape: Callable[..., Profile]) -> Callable[..., Road]:
     return _with_signature(road, [*_parameters(road, "given"), *_parameters(shape, "length", "start")])
 
 
-def superposed(*, interval: tuple[float, float], parts: Sequence[Road]) -> Road:
+def roads_superposed(*, interval: tuple[float, float], parts: Sequence[Road]) -> Road:
     """Add roads up."""
     profile = combination.superposed(*[part.profile for part in parts])
     return Road(profile, "; ".join(part.description for part in parts))
 
 
-def side_by_side(*, interval: tuple[float, float], parts: Sequence[Road]) -> Road:
+def roads_side_by_side(*, interval: tuple[float, float], parts: Sequence[Road]) -> Road:
     """Set roads side by side, each a path of its own."""
     profile = combination.side_by_side(*[part.profile for part in parts])
     return Road(profile, "; ".join(part.description for part in parts))
@@ -160,6 +160,6 @@ ROADS: dict[str, Callable[..., Road]] = {
     **{name: realised(spectrum) for name, spectrum in SPECTRA.items()},
     "laplace_road": laplace_road,
     **{shape.__name__: shaped(shape) for shape in SHAPES},
-    "superposed": superposed,
-    "side_by_side": side_by_side,
+    "superposed": roads_superposed,
+    "side_by_side": roads_side_by_side,
 }

@@ -58,7 +58,7 @@ class Scenario:
     vehicle : Vehicle, optional
         The vehicle; None with prescribed loads.
     road : Road, optional
-        The profile; None with prescribed loads.
+        The profile and what it stands for; None with prescribed loads.
     loads : Loads, optional
         The prescribed loads; None with a vehicle.
     folder : Path
@@ -120,7 +120,9 @@ class Scenario:
                 blend=journey.blend,
                 progress=progress,
             )
-        road = {} if self.road is None else {"road": self.road.description}
-        if self.road is not None and self.road.spectrum is not None:
-            road["spectrum"] = str(self.road.spectrum)
-        return result.assign_attrs(scenario=self.text, **road)
+        attributes = {"scenario": self.text}
+        if self.road is not None:
+            attributes["road"] = self.road.description
+            if self.road.spectrum is not None:
+                attributes["spectrum"] = str(self.road.spectrum)
+        return result.assign_attrs(attributes)

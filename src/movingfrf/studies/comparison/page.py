@@ -10,7 +10,7 @@ from movingfrf._basics.version import VERSION
 from movingfrf._basics.wording import number, plain
 from movingfrf.reports.axes import legend_above
 from movingfrf.reports.curves import GREY, PALETTE
-from movingfrf.reports.figures import SINGLE, Illustration, blank, drawing, illustrated
+from movingfrf.reports.figures import SIZE, Illustration, blank, drawing, illustrated
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Column, Row, Setting, Table
 from movingfrf.stepping.exchange import numba_is_there
@@ -259,7 +259,7 @@ def _colours(comparison: Comparison) -> dict[str, str]:
 
 def _figures(comparison: Comparison) -> list[Illustration]:
     main, *others = comparison.reference.quantities
-    figure = blank(SINGLE + 1.6)
+    figure = blank(SIZE.single + 1.6)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
     legend_above(_error_over_time(comparison, main, ax, targets=True))
     found = [
@@ -274,7 +274,7 @@ def _figures(comparison: Comparison) -> list[Illustration]:
         )
     ]
     if others:
-        figure = blank(SINGLE + 0.8)
+        figure = blank(SIZE.single + 0.8)
         axes = figure.subplots(1, len(others), sharex=True, squeeze=False)[0]
         for ax, name in zip(axes, others, strict=True):
             _error_over_time(comparison, name, ax, targets=False)
