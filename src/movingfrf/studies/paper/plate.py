@@ -90,7 +90,7 @@ class Models:
             last=float(at.max()) + around,
             across=self.across,
             poisson=SUBSTITUTES.poisson,
-            absorbing=10.0,
+            absorbing=10.0,  # of that, at either end
             travels=True,
         )
         return cdfm(
