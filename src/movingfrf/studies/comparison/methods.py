@@ -49,8 +49,8 @@ class Stretch:
     absorbing: float = 0.6  # share of it that absorbs [0.4 to 0.8]
     # Elements that are tried, rounded, the longest first [0.1 to 0.3: longer ones do not carry the waves at 70 Hz].
     elements: tuple[float, ...] = (0.3, 0.15)
-    # Time for which weights travel over the smooth road before a record begins [s] [1 to 4; from 2 where a foundation
-    # has a tenth of a pavement's damping].
+    # Time for which weights travel over the smooth road before a record begins [s] [1 to 4; from 2 where a
+    # foundation has a tenth of a pavement's damping].
     run_in: float = 1.0
 
 
