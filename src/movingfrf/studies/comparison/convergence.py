@@ -13,7 +13,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.scenarios.scenario import Scenario
-from movingfrf.studies.comparison.methods import STRETCH, Case, elements, newmark, stepped
+from movingfrf.studies.comparison.methods import DISCRETISATION, Case, elements, newmark, stepped
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -113,7 +113,7 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
         return {name: values[:: 2**level].copy() for name, values in quantities(result, scenario).items()}
 
     # First the length of the road, coarsely: what comes back from its ends changes the answer like a mesh error.
-    around, coarse, enough = STRETCH.around, solved(0, STRETCH.around), math.nan
+    around, coarse, enough = DISCRETISATION.around, solved(0, DISCRETISATION.around), math.nan
     while True:
         wider = solved(0, 2 * around)
         from_ends = relative_l2(coarse, wider)

@@ -38,8 +38,8 @@ Solve = Callable[[], "xr.Dataset"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stretch:
-    """What is cut out of the endless road for stepping; in brackets, between what each number is safe.
+class Discretisation:
+    """How the endless road becomes one that can be stepped; in brackets, between what each number is safe.
 
     Lengths are multiples of the one over which the road bends, (4 EI/k)^¼.
     """
@@ -54,7 +54,7 @@ class Stretch:
     run_in: float = 1.0
 
 
-STRETCH = Stretch()
+DISCRETISATION = Discretisation()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -76,7 +76,7 @@ class Case:
     scenario: Scenario
     time_step: float
     element: float
-    around: float = STRETCH.around
+    around: float = DISCRETISATION.around
 
     @property
     def journey(self) -> Journey:
@@ -134,7 +134,7 @@ class Case:
         first, last = self.places.min() - around, self.places.max() + around
         if not travels:
             journey = self.journey
-            before = STRETCH.run_in * journey.speed if self.scenario.loads is None else 0.0
+            before = DISCRETISATION.run_in * journey.speed if self.scenario.loads is None else 0.0
             first += journey.start - before
             last += journey.start + journey.speed * journey.time_step * journey.samples
         # Nodes at multiples of the element, wherever the track ends: its length must not change the mesh.
@@ -143,7 +143,7 @@ class Case:
             first=math.floor(first / self.element) * self.element,
             last=math.ceil(last / self.element) * self.element,
             element=self.element,
-            absorbing=STRETCH.absorbing * around,
+            absorbing=DISCRETISATION.absorbing * around,
             travels=travels,
         )
 
@@ -202,7 +202,7 @@ def stepped(
         (case.finite(travels=travels), *parts),
         iteration=iteration,
         superposed=superposed,
-        run_in=STRETCH.run_in,
+        run_in=DISCRETISATION.run_in,
         progress=progress,
     )
 
@@ -375,7 +375,7 @@ def elements(scenario: Scenario) -> list[float]:
     """
     assert isinstance(scenario.guideway, Track)
     length = bending_length(scenario.guideway)
-    return [_rounded(share * length) for share in STRETCH.elements]
+    return [_rounded(share * length) for share in DISCRETISATION.elements]
 
 
 def _rounded(value: float) -> float:

@@ -22,7 +22,7 @@ from movingfrf.studies.paper.study import Study, quiet, relative, scenario
 from movingfrf.studies.paper.vehicle import NAMES
 
 # The forms of the moving FRF, in a few words.
-FORMS = {
+SHORT_NAMES = {
     "moving-frf": "closed form",
     "moving-frf-fe-plain": "40 m of elements as in the paper",
     "moving-frf-fe": "40 m with cancelled ends",
@@ -122,7 +122,7 @@ def cheaper(study: Study) -> Outcome:
             **{
                 f"{name.replace('-', '_')}_over_{ours.replace('-', '_')}_at_{target:g}": found[name] / found[ours]
                 for target, found in equal.items()
-                for ours in FORMS
+                for ours in SHORT_NAMES
                 for name in others
             },
             "multiplications_of_the_road_alone_over_moving_frf": counts[0] / counts[1],
@@ -148,7 +148,7 @@ def cheaper(study: Study) -> Outcome:
                     for target in equal
                     for column in (
                         Column(f"to {number(target, 1)}", "s"),
-                        *(Column(f"to {number(target, 1)}, over {FORMS[ours]}", "") for ours in FORMS),
+                        *(Column(f"to {number(target, 1)}, over {SHORT_NAMES[ours]}", "") for ours in SHORT_NAMES),
                     )
                 ],
                 [
@@ -157,10 +157,10 @@ def cheaper(study: Study) -> Outcome:
                         [
                             value
                             for found in equal.values()
-                            for value in (found[name], *(found[name] / found[ours] for ours in FORMS))
+                            for value in (found[name], *(found[name] / found[ours] for ours in SHORT_NAMES))
                         ],
                     )
-                    for name in (*FORMS, *others)
+                    for name in (*SHORT_NAMES, *others)
                 ],
             )
         ],

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Layout:
+class JournalStyle:
     """A figure of a journal; sizes are conventions."""
 
     width: float = 7.0  # over two columns [inch]
@@ -31,7 +31,7 @@ class Layout:
     stroke: float = 1.1  # width of a curve [pt]
 
 
-LAYOUT = Layout()
+JOURNAL_STYLE = JournalStyle()
 
 
 class Stroke(NamedTuple):
@@ -39,7 +39,7 @@ class Stroke(NamedTuple):
 
     color: str
     linestyle: Any = "-"
-    linewidth: float = LAYOUT.stroke
+    linewidth: float = JOURNAL_STYLE.stroke
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,14 +79,14 @@ def journal() -> Iterator[None]:
     with drawing():
         matplotlib.rcParams.update(
             {
-                "font.size": LAYOUT.text,
-                "axes.titlesize": LAYOUT.text,
-                "axes.labelsize": LAYOUT.text,
-                "xtick.labelsize": LAYOUT.small,
-                "ytick.labelsize": LAYOUT.small,
-                "legend.fontsize": LAYOUT.small,
+                "font.size": JOURNAL_STYLE.text,
+                "axes.titlesize": JOURNAL_STYLE.text,
+                "axes.labelsize": JOURNAL_STYLE.text,
+                "xtick.labelsize": JOURNAL_STYLE.small,
+                "ytick.labelsize": JOURNAL_STYLE.small,
+                "legend.fontsize": JOURNAL_STYLE.small,
                 "legend.frameon": False,
-                "lines.linewidth": LAYOUT.stroke,
+                "lines.linewidth": JOURNAL_STYLE.stroke,
             }
         )
         yield
@@ -96,7 +96,7 @@ def canvas(rows: int, columns: int, height: float, **how: Any) -> tuple[Figure, 
     """Make a figure of panels, each with its letter, where there are several."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(LAYOUT.width, height), layout="constrained")
+    figure = Figure(figsize=(JOURNAL_STYLE.width, height), layout="constrained")
     axes = list(figure.subplots(rows, columns, squeeze=False, **how).flat)
     if len(axes) > 1:
         for letter, ax in zip("abcdefghijkl", axes, strict=False):
@@ -140,7 +140,7 @@ def drawn(figure: Figure, key: str) -> tuple[str, bytes]:
     svg = drawn_svg(figure, key)
     # Drawing has placed everything; doing so again would take most of the time.
     figure.set_layout_engine("none")
-    figure.set_dpi(LAYOUT.resolution)
+    figure.set_dpi(JOURNAL_STYLE.resolution)
     written = io.BytesIO()
     FigureCanvasAgg(figure).print_png(written, metadata={"Software": None})  # type: ignore[no-untyped-call]
     return svg, written.getvalue()
