@@ -14,11 +14,11 @@ import pytest
 
 from movingfrf.commands.main import main
 from movingfrf.results.files import replacing
+from movingfrf.studies.paper.guideway import _falls_from
 from movingfrf.studies.paper.items import ITEMS, chosen, reproduce
 from movingfrf.studies.paper.load import _enough
-from movingfrf.studies.paper.outcome import FAILS, HOLDS, PARTLY, SHOWN, UNJUDGED
+from movingfrf.studies.paper.outcome import Verdict
 from movingfrf.studies.paper.report import write
-from movingfrf.studies.paper.road import _falls_from
 from movingfrf.studies.paper.study import SCENARIOS, Study, scenario
 
 
@@ -79,7 +79,7 @@ def test_claim_4_forty_metres(numbers):
 
 
 def test_claim_5_is_left_open(items):
-    assert [statement["verdict"] for statement in items["claim5"]["statements"]] == [UNJUDGED]
+    assert [statement["verdict"] for statement in items["claim5"]["statements"]] == [Verdict.UNJUDGED]
     assert not items["claim5"]["numbers"]
 
 
@@ -153,7 +153,7 @@ def test_every_item_says_what_is_stated_found_and_substituted(items):
     for key, item in items.items():
         assert item["statements"], key
         for statement in item["statements"]:
-            assert statement["verdict"] in (HOLDS, PARTLY, FAILS, UNJUDGED, SHOWN)
+            assert statement["verdict"] in set(Verdict)
             assert statement["stated"]
             assert statement["found"]
         assert item["substitutes"] or key == "claim5"
@@ -306,7 +306,7 @@ def test_both_vehicles_are_one():
 
 
 def test_the_road_of_the_paper_has_480_unknowns():
-    assert Study().newmark_road.dofs == 480
+    assert Study().finite.dofs == 480
 
 
 def test_where_an_error_is_small_enough():

@@ -35,23 +35,27 @@ from movingfrf.studies.comparison.convergence import (
     maximum_error,
     relative_l2,
 )
-from movingfrf.studies.comparison.methods import WITH_LOADS, WITH_VEHICLE, Case, Method, chosen, elements
+from movingfrf.studies.comparison.methods import FOR_LOADS, FOR_VEHICLE, Case, Method, chosen, elements
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-# Steps of the error–time figure, relative to the scenario's own: powers of two, so that all have times in common.
-STEPS = (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Timing:
+    """How methods are timed; in brackets, between what each number is safe. None of them changes an error."""
 
-# Runs that are timed: until so many, or until they have taken so long together [s].
-RUNS, PATIENCE = 3, 2.0
+    # Steps of the error–time figure, relative to the scenario's own [powers of two: all have times in common].
+    steps: tuple[float, ...] = (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)
+    runs: int = 3  # that are timed, at most [from 1; the more, the less a busy machine shows]
+    patience: float = 2.0  # no further run once they have taken so long together [s] [from 0]
+    warm_up: float = 0.2  # of a first run, which compiles and fills caches [s] [from 0: at least 20 steps are run]
 
-# A first run, which compiles and fills caches, is this long [s].
-WARM_UP = 0.2
+
+TIMING = Timing()
 
 
-class Row(NamedTuple):
+class Performance(NamedTuple):
     """One method at the scenario's own step."""
 
     method: str
@@ -84,7 +88,7 @@ class Comparison:
     ----------
     scenario : Scenario
         The case.
-    rows : list of Row
+    rows : list of Performance
         The table.
     curve : list of Point
         The error–time figure.
@@ -95,7 +99,7 @@ class Comparison:
     """
 
     scenario: Scenario
-    rows: list[Row]
+    rows: list[Performance]
     curve: list[Point]
     reference: Reference
     equal_error: dict[float, dict[str, float]] = field(default_factory=dict)
@@ -112,7 +116,7 @@ def compare(
     *,
     curve: bool = True,
     memory: bool = True,
-    runs: int = RUNS,
+    runs: int = TIMING.runs,
     progress: Progress = silent,
 ) -> Comparison:
     """Solve one case by several methods and compare times, memory and errors.
@@ -149,7 +153,7 @@ def compare(
     compared = chosen(scenario, methods)
     own = Case(scenario=scenario, time_step=scenario.journey.time_step, element=elements(scenario)[-1])
     for case in (own, replace(own, element=elements(scenario)[0])):
-        case.road(travels=True)  # refuses what cannot be divided before anything long begins
+        case.finite(travels=True)  # refuses what cannot be divided before anything long begins
     with threadpool_limits(limits=1), _quiet():
         # Whatever a method refuses it refuses here, before anything long begins.
         _warm_up(own, compared, progress)
@@ -179,7 +183,7 @@ def _quiet() -> Iterator[None]:
 def _warm_up(case: Case, methods: Mapping[str, Method], progress: Progress) -> None:
     """Run each method once, briefly: compiled loops are compiled, modules loaded."""
     journey = case.scenario.journey
-    brief = replace(journey, duration=min(journey.duration, max(WARM_UP, 20 * journey.time_step)))
+    brief = replace(journey, duration=min(journey.duration, max(TIMING.warm_up, 20 * journey.time_step)))
     short = replace(case, scenario=replace(case.scenario, journey=brief))
     for number, (name, method) in enumerate(methods.items()):
         progress(f"loading {name}", number / len(methods))
@@ -191,7 +195,7 @@ def _timed(method: Method, case: Case, runs: int) -> tuple[float, float, xr.Data
     setups: list[float] = []
     solves: list[float] = []
     began = time.perf_counter()
-    while len(setups) < runs and (not setups or time.perf_counter() - began < PATIENCE):
+    while len(setups) < runs and (not setups or time.perf_counter() - began < TIMING.patience):
         first = time.perf_counter()
         solve = method.prepare(case)
         second = time.perf_counter()
@@ -203,7 +207,7 @@ def _timed(method: Method, case: Case, runs: int) -> tuple[float, float, xr.Data
 
 def _row(
     name: str, method: Method, case: Case, reference: Reference, memory: bool, runs: int, progress: Progress
-) -> Row:
+) -> Performance:
     progress(f"{name}, {case.time_step:g} s", 0.0)
     setup, solve, result = _timed(method, case, runs)
     with warnings.catch_warnings(record=True) as caught:
@@ -213,7 +217,7 @@ def _row(
     found, wanted = aligned(result, case, reference)
     if memory:
         progress(f"{name}, memory", 0.5)
-    return Row(
+    return Performance(
         name,
         case.time_step,
         case.element if method.divides else math.nan,
@@ -233,7 +237,7 @@ def _curve(
     """Run every method over a range of steps, and over some elements where it has any."""
     journey = case.scenario.journey
     # A step must leave a few samples, and be a whole multiple or part of the scenario's.
-    steps = [factor * case.time_step for factor in STEPS if factor * case.time_step <= journey.duration / 20]
+    steps = [factor * case.time_step for factor in TIMING.steps if factor * case.time_step <= journey.duration / 20]
     runs = [
         (name, replace(case, time_step=step, element=element))
         for name, method in methods.items()
@@ -328,7 +332,7 @@ def _measure_memory(asked: Mapping[str, Any]) -> int:
     """Measure the peak in this process."""
     scenario = parse_scenario(asked["text"], folder=asked["folder"])
     case = Case(scenario=scenario, time_step=asked["time_step"], element=asked["element"], around=asked["around"])
-    method = (WITH_VEHICLE if scenario.loads is None else WITH_LOADS)[asked["method"]]
+    method = (FOR_VEHICLE if scenario.loads is None else FOR_LOADS)[asked["method"]]
     with threadpool_limits(limits=1), _quiet():
         _warm_up(case, {asked["method"]: method}, silent)
         tracemalloc.start()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -12,18 +13,30 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.scenarios.scenario import Scenario
-from movingfrf.studies.comparison.methods import AROUND, Case, elements, newmark, stepped
+from movingfrf.studies.comparison.methods import DISCRETISATION, Case, elements, newmark, stepped
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-# The converged answer: its movement at which it counts as converged, and at which it is none; how often it is
-# refined at most; the longest road around the vehicle, in lengths over which it bends.
-CONVERGED, HOPELESS, REFINEMENTS, WIDEST = 5e-6, 5e-2, 4, 200.0
+# Errors at which methods are compared for time.
+TARGETS = (1e-3, 1e-4)
 
-# Errors at which methods are compared for time, and the share of them that the ends of a road may add.
-TARGETS, UNSEEN = (1e-3, 1e-4), 0.2
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Refinement:
+    """What tunes the search for the converged answer; in brackets, between what each number is safe."""
+
+    # Movement at which it counts as converged [1e-6 to 1e-5, a tenth of the least target].
+    enough: float = 5e-6
+    hopeless: float = 5e-2  # movement at which it is none [a convention]
+    levels: int = 4  # how often step and elements are halved at most [4 to 5; after 3 it still moves by 2e-5]
+    # Where no longer stretch at either side is tried, in lengths over which the road bends [100 to 400].
+    farthest: float = 200.0
+    unseen: float = 0.2  # share of the least target that the ends of a compared road may add [0.05 to 0.5]
+
+
+REFINEMENT = Refinement()
 
 Quantities = dict[str, FloatArray]
 
@@ -100,27 +113,27 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
         return {name: values[:: 2**level].copy() for name, values in quantities(result, scenario).items()}
 
     # First the length of the road, coarsely: what comes back from its ends changes the answer like a mesh error.
-    around, coarse, enough = AROUND, solved(0, AROUND), math.nan
+    around, coarse, enough = DISCRETISATION.around, solved(0, DISCRETISATION.around), math.nan
     while True:
         wider = solved(0, 2 * around)
         from_ends = relative_l2(coarse, wider)
-        if math.isnan(enough) and next(iter(from_ends.values())) <= UNSEEN * min(TARGETS):
+        if math.isnan(enough) and next(iter(from_ends.values())) <= REFINEMENT.unseen * min(TARGETS):
             enough = around
-        if max(from_ends.values()) <= CONVERGED or around >= WIDEST:
+        if max(from_ends.values()) <= REFINEMENT.enough or around >= REFINEMENT.farthest:
             break
         around, coarse = 2 * around, wider
     answers: list[Quantities] = []
     movement: dict[str, float] = {}
-    for level in range(1, REFINEMENTS + 1):
+    for level in range(1, REFINEMENT.levels + 1):
         fine = solved(level, around)
         answers.append({name: (4 * fine[name] - coarse[name]) / 3 for name in fine})
         coarse = fine
         if len(answers) > 1:
             movement = relative_l2(answers[-2], answers[-1])
-            if max(movement.values()) <= CONVERGED:
+            if max(movement.values()) <= REFINEMENT.enough:
                 break
     movement = {name: max(moved, from_ends[name]) for name, moved in movement.items()}
-    if not min(movement.values()) <= HOPELESS:
+    if not min(movement.values()) <= REFINEMENT.hopeless:
         raise SolveError(
             f"the answer from the time domain does not converge: it still moves by {min(movement.values()):.1e} "
             f"when step and elements are halved for the last time, to {step / 2**level:.3g} s; the scenario's "

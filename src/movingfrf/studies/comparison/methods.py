@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -34,19 +34,27 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Road in front of and behind the vehicle, in lengths (4 EI/k)^¼ over which it bends; the share of it that absorbs.
-AROUND, ABSORBING = 14.0, 0.6
-
-# Elements that are tried, in the same lengths (rounded).
-ELEMENTS = (0.3, 0.15)
-
-# Time for which weights travel over the smooth road before a stepped record begins [s].
-RUN_IN = 1.0
-
-# Longest step of the struck road, of which the step of Duhamel's integral is a whole multiple [s].
-STRIKE_STEP = CANCELLING.time_step
-
 Solve = Callable[[], "xr.Dataset"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Discretisation:
+    """How the endless road becomes one that can be stepped; in brackets, between what each number is safe.
+
+    Lengths are multiples of the one over which the road bends, (4 EI/k)^¼.
+    """
+
+    # Road in front of and behind the vehicle; a comparison doubles it until its ends are not seen [10 to 56].
+    around: float = 14.0
+    absorbing: float = 0.6  # share of it that absorbs [0.4 to 0.8]
+    # Elements that are tried, rounded, the longest first [0.1 to 0.3: longer ones do not carry the waves at 70 Hz].
+    elements: tuple[float, ...] = (0.3, 0.15)
+    # Time for which weights travel over the smooth road before a record begins [s] [1 to 4; from 2 where a
+    # foundation has a tenth of a pavement's damping].
+    run_in: float = 1.0
+
+
+DISCRETISATION = Discretisation()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -68,7 +76,7 @@ class Case:
     scenario: Scenario
     time_step: float
     element: float
-    around: float = AROUND
+    around: float = DISCRETISATION.around
 
     @property
     def journey(self) -> Journey:
@@ -120,22 +128,22 @@ class Case:
         how = {"speed": journey.speed, "time_step": journey.time_step, "observe": loads.observe}
         return (self.forces(), loads.positions), how
 
-    def road(self, *, travels: bool) -> FiniteGuideway:
-        """Cut out what the journey needs: all of it, or what travels along."""
+    def finite(self, *, travels: bool) -> FiniteGuideway:
+        """Cut out of the track what the journey needs: all of it, or what travels along."""
         around = self.around * bending_length(self.track)
         first, last = self.places.min() - around, self.places.max() + around
         if not travels:
             journey = self.journey
-            before = RUN_IN * journey.speed if self.scenario.loads is None else 0.0
+            before = DISCRETISATION.run_in * journey.speed if self.scenario.loads is None else 0.0
             first += journey.start - before
             last += journey.start + journey.speed * journey.time_step * journey.samples
-        # Nodes at multiples of the element, wherever the road ends: its length must not change the mesh.
+        # Nodes at multiples of the element, wherever the track ends: its length must not change the mesh.
         return finite_track(
             self.track,
             first=math.floor(first / self.element) * self.element,
             last=math.ceil(last / self.element) * self.element,
             element=self.element,
-            absorbing=ABSORBING * around,
+            absorbing=DISCRETISATION.absorbing * around,
             travels=travels,
         )
 
@@ -164,11 +172,13 @@ def _moving_frf_fe_plain(case: Case) -> Solve:
 
 
 def _duhamel(case: Case) -> Solve:
+    # The step of the integral is a whole multiple of that of the struck road, which is no longer than its recipe's.
+    per_step = math.ceil(case.time_step / CANCELLING.time_step - 1e-9)
     struck = struck_track(
         case.track,
         speed=case.journey.speed,
         offsets=case.offsets,
-        time_step=case.time_step / math.ceil(case.time_step / STRIKE_STEP - 1e-9),
+        time_step=case.time_step / per_step,
     )
     if case.scenario.loads is not None:
         given, how = case.loaded()
@@ -189,10 +199,10 @@ def stepped(
     parts, _ = case.driven()
     return prepared(
         case.journey,
-        (case.road(travels=travels), *parts),
+        (case.finite(travels=travels), *parts),
         iteration=iteration,
         superposed=superposed,
-        run_in=RUN_IN,
+        run_in=DISCRETISATION.run_in,
         progress=progress,
     )
 
@@ -215,45 +225,84 @@ def _sim(case: Case) -> Solve:
 
 def newmark(case: Case, *, travels: bool = False, progress: Progress = silent) -> Solve:
     """Step the road under prescribed loads."""
-    road = case.road(travels=travels)
+    finite = case.finite(travels=travels)
     given, how = case.loaded()
-    return lambda: newmark_loads(road, *given, progress=progress, **how)
+    return lambda: newmark_loads(finite, *given, progress=progress, **how)
 
 
 def _newmark_window(case: Case) -> Solve:
     return newmark(case, travels=True)
 
 
-class Method(NamedTuple):
-    """What prepares a case, what the method does in a few words, and whether it divides the whole road."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Method:
+    """One way to solve a case.
+
+    Parameters
+    ----------
+    prepare : callable
+        Prepares a case and returns what solves it.
+    words : str
+        What the method does, in a few words.
+    divides : bool
+        Whether it divides the road of the journey into elements, whose length matters.
+    strikes : bool
+        Whether it strikes 40 m of road.
+    usual : bool
+        Whether it is compared if nobody says what.
+    beside : str, optional
+        The variant that is shown beside it.
+    """
 
     prepare: Callable[[Case], Solve]
     words: str
-    divides: bool = False  # into elements whose length matters
+    divides: bool = False
+    strikes: bool = False
+    usual: bool = False
+    beside: str | None = None
 
 
-WITH_VEHICLE: dict[str, Method] = {
-    "moving-frf": Method(_moving_frf, "moving FRF in closed form"),
-    "moving-frf-fe": Method(_moving_frf_fe, "moving FRF of 40 m of finite elements, end reflections cancelled"),
-    "moving-frf-fe-plain": Method(_moving_frf_fe_plain, "moving FRF of 40 m of finite elements, as in the paper"),
-    "duhamel": Method(_duhamel, "Duhamel's integral with the moving impulse response of the finite elements"),
-    "cdfm": Method(_cdfm, "coupled method, the whole road", True),
-    "cdfm-window": Method(_cdfm_window, "coupled method, a stretch of road that travels along", True),
-    "cdfm-weight": Method(_cdfm_weight, "coupled method, the whole road, the weight stepped as well", True),
-    "sim": Method(_sim, "separate iterative method, the whole road", True),
+FOR_VEHICLE: dict[str, Method] = {
+    "moving-frf": Method(prepare=_moving_frf, words="moving FRF in closed form", usual=True),
+    "moving-frf-fe": Method(
+        prepare=_moving_frf_fe,
+        words="moving FRF of 40 m of finite elements, end reflections cancelled",
+        strikes=True,
+        usual=True,
+    ),
+    "moving-frf-fe-plain": Method(
+        prepare=_moving_frf_fe_plain, words="moving FRF of 40 m of finite elements, as in the paper", strikes=True
+    ),
+    "duhamel": Method(
+        prepare=_duhamel,
+        words="Duhamel's integral with the moving impulse response of the finite elements",
+        strikes=True,
+        usual=True,
+    ),
+    "cdfm": Method(
+        prepare=_cdfm, words="coupled method, the whole road", divides=True, usual=True, beside="cdfm-window"
+    ),
+    "cdfm-window": Method(
+        prepare=_cdfm_window, words="coupled method, a stretch of road that travels along", divides=True
+    ),
+    "cdfm-weight": Method(
+        prepare=_cdfm_weight, words="coupled method, the whole road, the weight stepped as well", divides=True
+    ),
+    "sim": Method(prepare=_sim, words="separate iterative method, the whole road", divides=True, usual=True),
 }
-WITH_LOADS: dict[str, Method] = {
-    **{name: WITH_VEHICLE[name] for name in ("moving-frf", "moving-frf-fe", "moving-frf-fe-plain", "duhamel")},
-    "newmark": Method(newmark, "Newmark's method, the whole road", True),
-    "newmark-window": Method(_newmark_window, "Newmark's method, a stretch of road that travels along", True),
+FOR_LOADS: dict[str, Method] = {
+    **{name: FOR_VEHICLE[name] for name in ("moving-frf", "moving-frf-fe", "moving-frf-fe-plain", "duhamel")},
+    "newmark": Method(
+        prepare=newmark,
+        words="Newmark's method, the whole road",
+        divides=True,
+        usual=True,
+        beside="newmark-window",
+    ),
+    "newmark-window": Method(
+        prepare=_newmark_window, words="Newmark's method, a stretch of road that travels along", divides=True
+    ),
 }
-
-# What strikes 40 m of road has no room for a vehicle longer than this [m]; it is then not among the usual ones.
-STRUCK, LONGEST_ON_STRUCK = ("moving-frf-fe", "duhamel"), 16.0
-
-# What is compared if nobody says; and the variant that is shown beside a method.
-USUAL = ("moving-frf", "moving-frf-fe", "duhamel", "cdfm", "sim", "newmark")
-BESIDE = {"cdfm": "cdfm-window", "newmark": "newmark-window"}
 
 
 def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]:
@@ -276,7 +325,7 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
     ValueError
         If a method is unknown or does not suit the scenario, or the guideway cannot be divided into elements.
     """
-    known, others = (WITH_VEHICLE, WITH_LOADS) if scenario.loads is None else (WITH_LOADS, WITH_VEHICLE)
+    known, others = (FOR_VEHICLE, FOR_LOADS) if scenario.loads is None else (FOR_LOADS, FOR_VEHICLE)
     guideway = scenario.guideway
     if not isinstance(guideway, Track) or not isinstance(guideway.beam, EulerBernoulliBeam):
         kind = type(guideway.beam if isinstance(guideway, Track) else guideway).__name__
@@ -291,8 +340,9 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
             "nothing to compare: give each contact a finite stiffness [N/m], as hertzian_stiffness does for a "
             "wheel on a rail"
         )
-    long = vehicle is not None and np.ptp(vehicle.positions) > LONGEST_ON_STRUCK
-    usual = [name for name in USUAL if name in known and not (long and name in STRUCK)]
+    # 40 m of road have no room for a vehicle longer than 16 m: what strikes them is then not among the usual ones.
+    long = vehicle is not None and np.ptp(vehicle.positions) > 16.0
+    usual = [name for name, method in known.items() if method.usual and not (long and method.strikes)]
     wanted = usual if names is None else list(names)
     unknown = [name for name in wanted if name not in known]
     if unknown or not wanted:
@@ -301,7 +351,7 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
         raise ValueError(
             f"methods for a scenario with {what} are {', '.join(known)}; got {', '.join(unknown) or 'none'}{hint}"
         )
-    shown = [other for name in wanted for other in (name, BESIDE.get(name, name))]
+    shown = [other for name in wanted for other in (name, known[name].beside or name)]
     return {name: known[name] for name in dict.fromkeys(shown)}
 
 
@@ -325,7 +375,7 @@ def elements(scenario: Scenario) -> list[float]:
     """
     assert isinstance(scenario.guideway, Track)
     length = bending_length(scenario.guideway)
-    return [_rounded(share * length) for share in ELEMENTS]
+    return [_rounded(share * length) for share in DISCRETISATION.elements]
 
 
 def _rounded(value: float) -> float:

@@ -16,22 +16,17 @@ from movingfrf.reports.tables import Column, Row, Setting, Table
 from movingfrf.stepping.exchange import numba_is_there
 from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
 from movingfrf.studies.comparison.convergence import TARGETS
-from movingfrf.studies.comparison.methods import BESIDE, WITH_LOADS, WITH_VEHICLE, compiles
+from movingfrf.studies.comparison.methods import FOR_LOADS, FOR_VEHICLE, compiles
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-
-WORDS = {name: method.words for name, method in (WITH_VEHICLE | WITH_LOADS).items()}
 
 QUANTITIES = {
     "contact_force": "contact force",
     "deflection": "deflection",
     "wheel_acceleration": "wheel acceleration",
 }
-
-# Dashes and markers of the lines of one method, from the longest elements to the shortest.
-LINES = (("--", "o"), ("-", "s"))
 
 
 def render(comparison: Comparison) -> str:
@@ -296,9 +291,11 @@ def _error_over_time(comparison: Comparison, quantity: str, ax: Axes, *, targets
     if targets:
         for target in comparison.equal_error:
             ax.axhline(target, color=GREY, linestyle=":", linewidth=1.2)
+    # Dashes and markers of the lines of one method, from the longest elements to the shortest.
+    looks = (("--", "o"), ("-", "s"))
     for name in _methods(comparison):
         lines = _lines([point for point in comparison.curve if point.method == name])
-        for (dashes, marker), line in zip(LINES[-len(lines) :], lines, strict=True):
+        for (dashes, marker), line in zip(looks[-len(lines) :], lines, strict=True):
             ax.plot(
                 [point.seconds for point in line],
                 [point.relative_l2[quantity] for point in line],
@@ -323,8 +320,10 @@ def _lines(points: Sequence[Point]) -> list[list[Point]]:
 
 def _method(comparison: Comparison) -> list[str]:
     main = _name(comparison.main_quantity)
-    lines = [f"{name}: {WORDS[name]}." for name in _methods(comparison)]
-    stepped = [name for name in _methods(comparison) if name in {*BESIDE, *BESIDE.values(), "sim"}]
+    methods = {name: (FOR_VEHICLE | FOR_LOADS)[name] for name in _methods(comparison)}
+    lines = [f"{name}: {method.words}." for name, method in methods.items()]
+    # With cdfm-weight the weight does not travel in a run of its own.
+    stepped = [name for name, method in methods.items() if method.divides and name != "cdfm-weight"]
     if stepped:
         lines.append(
             f"{', '.join(stepped)}: cubic Hermite elements, average acceleration (Newmark), what is constant "

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -19,41 +20,55 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-# Width of a figure over two columns [inch], and the resolution of its bitmap [1/inch].
-WIDTH, RESOLUTION = 7.0, 300
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JournalStyle:
+    """A figure of a journal; sizes are conventions."""
 
-STYLE: dict[Any, Any] = {
-    "font.size": 8.0,
-    "axes.titlesize": 8.0,
-    "axes.labelsize": 8.0,
-    "xtick.labelsize": 7.5,
-    "ytick.labelsize": 7.5,
-    "legend.fontsize": 7.5,
-    "legend.frameon": False,
-    "lines.linewidth": 1.1,
-}
+    width: float = 7.0  # over two columns [inch]
+    resolution: int = 300  # of the bitmap [1/inch]
+    text: float = 8.0  # of titles and labels [pt]
+    small: float = 7.5  # of ticks and legends [pt]
+    stroke: float = 1.1  # width of a curve [pt]
 
 
-class Line(NamedTuple):
+JOURNAL_STYLE = JournalStyle()
+
+
+class Stroke(NamedTuple):
     """How a curve is drawn: distinct by colour and by dashes."""
 
     color: str
     linestyle: Any = "-"
-    linewidth: float = 1.1
+    linewidth: float = JOURNAL_STYLE.stroke
 
 
-BLACK = Line(INK, "-", 1.5)
-BLUE, ORANGE, GREEN = (
-    Line(PALETTE[0]),
-    Line(PALETTE[1], (0, (5, 2))),
-    Line(PALETTE[2], (0, (2, 1.2))),
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Strokes:
+    """All strokes, by the names of their colours."""
+
+    black: Stroke
+    blue: Stroke
+    orange: Stroke
+    green: Stroke
+    pink: Stroke
+    gold: Stroke
+    sky: Stroke
+
+    @property
+    def coloured(self) -> tuple[Stroke, ...]:
+        """All but the black one, in the order of the palette."""
+        return (self.blue, self.orange, self.green, self.pink, self.gold, self.sky)
+
+
+STROKES = Strokes(
+    black=Stroke(INK, "-", 1.5),
+    blue=Stroke(PALETTE[0]),
+    orange=Stroke(PALETTE[1], (0, (5, 2))),
+    green=Stroke(PALETTE[2], (0, (2, 1.2))),
+    pink=Stroke(PALETTE[3], (0, (5, 1.5, 1, 1.5))),
+    gold=Stroke(PALETTE[4], (0, (7, 1.5))),
+    sky=Stroke(PALETTE[5], (0, (1, 1))),
 )
-PINK, GOLD, SKY = (
-    Line(PALETTE[3], (0, (5, 1.5, 1, 1.5))),
-    Line(PALETTE[4], (0, (7, 1.5))),
-    Line(PALETTE[5], (0, (1, 1))),
-)
-LINES = (BLUE, ORANGE, GREEN, PINK, GOLD, SKY)
 
 
 @contextmanager
@@ -62,7 +77,18 @@ def journal() -> Iterator[None]:
     import matplotlib
 
     with drawing():
-        matplotlib.rcParams.update(STYLE)
+        matplotlib.rcParams.update(
+            {
+                "font.size": JOURNAL_STYLE.text,
+                "axes.titlesize": JOURNAL_STYLE.text,
+                "axes.labelsize": JOURNAL_STYLE.text,
+                "xtick.labelsize": JOURNAL_STYLE.small,
+                "ytick.labelsize": JOURNAL_STYLE.small,
+                "legend.fontsize": JOURNAL_STYLE.small,
+                "legend.frameon": False,
+                "lines.linewidth": JOURNAL_STYLE.stroke,
+            }
+        )
         yield
 
 
@@ -70,7 +96,7 @@ def canvas(rows: int, columns: int, height: float, **how: Any) -> tuple[Figure, 
     """Make a figure of panels, each with its letter, where there are several."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    figure = Figure(figsize=(JOURNAL_STYLE.width, height), layout="constrained")
     axes = list(figure.subplots(rows, columns, squeeze=False, **how).flat)
     if len(axes) > 1:
         for letter, ax in zip("abcdefghijkl", axes, strict=False):
@@ -78,9 +104,9 @@ def canvas(rows: int, columns: int, height: float, **how: Any) -> tuple[Figure, 
     return figure, axes
 
 
-def curve(ax: Axes, x: FloatArray, y: FloatArray, line: Line, label: str = "", **more: Any) -> None:
+def curve(ax: Axes, x: FloatArray, y: FloatArray, stroke: Stroke, label: str = "", **more: Any) -> None:
     """Draw a curve, thinned out to what the eye sees."""
-    ax.plot(*decimated(np.asarray(x), np.asarray(y), buckets=1000), **line._asdict(), label=label, **more)
+    ax.plot(*decimated(np.asarray(x), np.asarray(y), buckets=1000), **stroke._asdict(), label=label, **more)
 
 
 def legend_outside(figure: Figure, ax: Axes) -> None:
@@ -114,7 +140,7 @@ def drawn(figure: Figure, key: str) -> tuple[str, bytes]:
     svg = drawn_svg(figure, key)
     # Drawing has placed everything; doing so again would take most of the time.
     figure.set_layout_engine("none")
-    figure.set_dpi(RESOLUTION)
+    figure.set_dpi(JOURNAL_STYLE.resolution)
     written = io.BytesIO()
     FigureCanvasAgg(figure).print_png(written, metadata={"Software": None})  # type: ignore[no-untyped-call]
     return svg, written.getvalue()

@@ -24,11 +24,7 @@ from movingfrf.stepping.moving_loads import newmark_loads
 from movingfrf.studies.comparison.convergence import converged
 from movingfrf.studies.paper import operations
 from movingfrf.studies.paper.drawing import (
-    BLACK,
-    BLUE,
-    ORANGE,
-    PINK,
-    SKY,
+    STROKES,
     amplitude_spectrum,
     canvas,
     curve,
@@ -36,19 +32,9 @@ from movingfrf.studies.paper.drawing import (
     logarithmic,
     title,
 )
-from movingfrf.studies.paper.outcome import DataTable, Outcome, Plot, Statement, verdict
-from movingfrf.studies.paper.road import SUBSTITUTE
-from movingfrf.studies.paper.study import (
-    FALLING,
-    NEWMARK_ELEMENT,
-    NEWMARK_START,
-    TRUNCATION,
-    Study,
-    quiet,
-    relative,
-    scenario,
-    timed,
-)
+from movingfrf.studies.paper.outcome import AGREEMENT, DataTable, Outcome, Plot, Statement, verdict
+from movingfrf.studies.paper.stated import STATED, SUBSTITUTES
+from movingfrf.studies.paper.study import Study, quiet, relative, scenario, timed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,33 +44,15 @@ if TYPE_CHECKING:
 # A response [m] with frequencies up to a cut [Hz].
 Sharp = Callable[[float], FloatArray]
 
-LOAD = (
-    "The load's history is a figure of the paper. Substitute: a constant with a seeded sum of harmonics below 60 "
-    "Hz, switched on and off over 0.2 s (scenario load) or within one step (scenario load_abrupt)."
-)
-
-# The error that the paper states beyond its truncation; a deviation wider than a line, over the range drawn;
-# the agreement of two curves that are called one, and of two that are called close.
-STATED, LINE_WIDTH, ONE_CURVE, CLOSE = 1e-4, 5e-3, 1e-2, 0.2
-
-# Steps of Newmark's method with full matrices that are timed.
-FEW = 200
-
-# Highest truncation that is tried [Hz].
-HIGHEST = 400.0
-
-# Share of the record at its end over which a history is faded out before it is cut in frequency.
-FADED = 0.05
-
 
 def response(study: Study) -> Outcome:
     """History and spectra of load and response; moving FRF against Newmark's method."""
     found, stepped = study.under_load(study.struck), study.by_newmark
-    truth = study.under_load(study.road).deflection.values
+    truth = study.under_load(study.guideway).deflection.values
     apart = relative(found.deflection.values, stepped.deflection.values)
     found_error, stepped_error = (relative(result.deflection.values, truth) for result in (found, stepped))
     journey = scenario("load").journey
-    endless = finite_track(study.road, first=-60.0, last=160.0, element=NEWMARK_ELEMENT)
+    endless = finite_track(study.guideway, first=-60.0, last=160.0, element=STATED.newmark_element)
     without_ends = relative(
         newmark_loads(
             endless, study.force, [0.0], speed=journey.speed, time_step=journey.time_step
@@ -102,7 +70,7 @@ def response(study: Study) -> Outcome:
                 f"by {number(stepped_error, 2)}, of which {number(without_ends, 2)} comes from its elements of "
                 "0.5 m and steps of 1 ms (on a road without ends) and the rest from the pinned end behind the "
                 f"load's start; the moving FRF of 40 m is off by {number(found_error, 2)}.",
-                verdict(apart < ONE_CURVE),
+                verdict(apart < AGREEMENT.one_curve),
                 "holds below 1 %",
             )
         ],
@@ -115,10 +83,10 @@ def response(study: Study) -> Outcome:
         computed=[
             f"Load and observer travel together at {journey.speed:g} m/s for {journey.duration:g} s in steps of "
             f"{1e3 * journey.time_step:g} ms. Moving FRF from 40 m of finite elements as in the paper; Newmark's "
-            f"method (average acceleration) on {study.newmark_road.dofs} unknowns, simply supported, the load "
-            f"starting {NEWMARK_START:g} m from the end. Nothing is truncated here.",
+            f"method (average acceleration) on {study.finite.dofs} unknowns, simply supported, the load "
+            f"starting {SUBSTITUTES.newmark_start:g} m from the end. Nothing is truncated here.",
         ],
-        substitutes=[SUBSTITUTE, LOAD],
+        substitutes=[SUBSTITUTES.road, SUBSTITUTES.load],
         plots=[
             Plot("figure_07", "Load history", "The load that travels along the road.", loaded),
             Plot(
@@ -142,7 +110,7 @@ def _figures_7_to_9(study: Study, found: xr.Dataset, stepped: xr.Dataset) -> tup
     time, force = found.time.values, study.force[:, 0]
     ours, theirs = found.deflection.values[:, 0], stepped.deflection.values[:, 0]
     loaded, (load_axis,) = canvas(1, 1, 1.9)
-    curve(load_axis, time, 1e-3 * force, BLUE)
+    curve(load_axis, time, 1e-3 * force, STROKES.blue)
     load_axis.set(xlabel="time [s]", ylabel="load [kN]", xlim=(0, 10))
     spectra, pair = canvas(1, 2, 2.3)
     for ax, values, scale, name in zip(
@@ -150,18 +118,18 @@ def _figures_7_to_9(study: Study, found: xr.Dataset, stepped: xr.Dataset) -> tup
     ):
         frequency, size = amplitude_spectrum(values, found.attrs["time_step"])
         drawn = (frequency > 0) & (frequency <= 100)
-        curve(ax, frequency[drawn], scale * size[drawn], BLUE)
+        curve(ax, frequency[drawn], scale * size[drawn], STROKES.blue)
         ax.set(xlabel="frequency [Hz]", ylabel=f"spectrum of the {name}", xlim=(0, 100))
         logarithmic(ax)
         ax.set_ylim(1e-5 * scale * size.max(), 2 * scale * size.max())
     histories, (whole, part, difference) = canvas(3, 1, 4.6, height_ratios=(3, 3, 2))
     for ax, interval in ((whole, (0.0, 10.0)), (part, (4.0, 4.5))):
         some = (time >= interval[0]) & (time <= interval[1])
-        curve(ax, time[some], 1e3 * theirs[some], BLACK, "Newmark's method, 120 m")
-        curve(ax, time[some], 1e3 * ours[some], ORANGE, "moving FRF")
+        curve(ax, time[some], 1e3 * theirs[some], STROKES.black, "Newmark's method, 120 m")
+        curve(ax, time[some], 1e3 * ours[some], STROKES.orange, "moving FRF")
         ax.set(ylabel="deflection [mm]", xlim=interval)
     legend_outside(histories, whole)
-    curve(difference, time, 1e6 * (ours - theirs), BLUE)
+    curve(difference, time, 1e6 * (ours - theirs), STROKES.blue)
     difference.set(xlabel="time [s]", ylabel="difference [µm]", xlim=(0, 10))
     return loaded, spectra, histories
 
@@ -171,48 +139,49 @@ def truncated(study: Study) -> Outcome:
     full = study.under_load(study.struck)
     time, whole = full.time.values, full.deflection.values
     sharply = study.cut_sharply(study.struck)
-    cut = {at: sharply(at) for at in (FALLING, TRUNCATION)}
+    cut = {at: sharply(at) for at in (STATED.falling, STATED.truncation)}
     error = {at: relative(values, whole) for at, values in cut.items()}
     widest = {at: float(np.abs(values - whole).max() / np.ptp(whole)) for at, values in cut.items()}
 
     figure, (above, below) = canvas(1, 2, 2.5, width_ratios=(2, 3))
     for ax, interval in ((above, (0.0, 10.0)), (below, (4.0, 4.4))):
         some = (time >= interval[0]) & (time <= interval[1])
-        curve(ax, time[some], 1e3 * whole[some, 0], BLACK, "full")
-        curve(ax, time[some], 1e3 * cut[FALLING][some, 0], ORANGE, f"{FALLING:g} Hz")
-        curve(ax, time[some], 1e3 * cut[TRUNCATION][some, 0], SKY, f"{TRUNCATION:g} Hz")
+        curve(ax, time[some], 1e3 * whole[some, 0], STROKES.black, "full")
+        curve(ax, time[some], 1e3 * cut[STATED.falling][some, 0], STROKES.orange, f"{STATED.falling:g} Hz")
+        curve(ax, time[some], 1e3 * cut[STATED.truncation][some, 0], STROKES.sky, f"{STATED.truncation:g} Hz")
         ax.set(xlabel="time [s]", ylabel="deflection [mm]", xlim=interval)
     legend_outside(figure, below)
     return Outcome(
         statements=[
             Statement(
-                f'"When the truncation frequency is {FALLING:g} Hz, the calculated response is close to the '
+                f'"When the truncation frequency is {STATED.falling:g} Hz, the calculated response is close to the '
                 'theoretical solution, but its deviations are visible."',
-                f"Relative error {number(error[FALLING], 2)}; the largest deviation is "
-                f"{number(100 * widest[FALLING], 2)} % of the range drawn.",
-                verdict(widest[FALLING] > LINE_WIDTH and error[FALLING] < CLOSE),
+                f"Relative error {number(error[STATED.falling], 2)}; the largest deviation is "
+                f"{number(100 * widest[STATED.falling], 2)} % of the range drawn.",
+                verdict(widest[STATED.falling] > AGREEMENT.line_width and error[STATED.falling] < AGREEMENT.close),
                 "holds if deviations are wider than a line, 0.5 % of the range, and the error below 20 %",
             ),
             Statement(
-                f'"When the truncation frequency is {TRUNCATION:g} Hz, the calculated response is '
+                f'"When the truncation frequency is {STATED.truncation:g} Hz, the calculated response is '
                 'indistinguishable from the theoretical solution."',
-                f"Relative error {number(error[TRUNCATION], 2)}; the largest deviation is "
-                f"{number(100 * widest[TRUNCATION], 2)} % of the range drawn, far less than the width of a line.",
-                verdict(widest[TRUNCATION] < LINE_WIDTH),
+                f"Relative error {number(error[STATED.truncation], 2)}; the largest deviation is "
+                f"{number(100 * widest[STATED.truncation], 2)} % of the range drawn, far less than the width of a "
+                "line.",
+                verdict(widest[STATED.truncation] < AGREEMENT.line_width),
                 "holds if deviations are narrower than a line",
             ),
         ],
         numbers={
-            "error_at_17_hz": error[FALLING],
-            "error_at_70_hz": error[TRUNCATION],
-            "largest_deviation_at_17_hz_over_range": widest[FALLING],
-            "largest_deviation_at_70_hz_over_range": widest[TRUNCATION],
+            "error_at_17_hz": error[STATED.falling],
+            "error_at_70_hz": error[STATED.truncation],
+            "largest_deviation_at_17_hz_over_range": widest[STATED.falling],
+            "largest_deviation_at_70_hz_over_range": widest[STATED.truncation],
         },
         computed=[
             "Moving FRF from 40 m of finite elements; frequencies beyond the truncation are left out, sharply as "
             "in the paper."
         ],
-        substitutes=[SUBSTITUTE, LOAD],
+        substitutes=[SUBSTITUTES.road, SUBSTITUTES.load],
         plots=[
             Plot(
                 "figure_10",
@@ -224,14 +193,14 @@ def truncated(study: Study) -> Outcome:
     )
 
 
-def truncation_error(study: Study) -> Outcome:
+def error_over_truncation(study: Study) -> Outcome:
     """Relative error over the truncation: of the road under the load, and of the coupled contact force."""
-    cuts = np.unique(np.r_[np.geomspace(5.0, HIGHEST, 16 if study.quick else 60), FALLING, TRUNCATION])
+    cuts = np.unique(np.r_[np.geomspace(5.0, 400.0, 16 if study.quick else 60), STATED.falling, STATED.truncation])
     sources: dict[str, tuple[str, Guideway]] = {
         "smooth load, 40 m of elements": ("load", study.struck),
-        "smooth load, closed form": ("load", study.road),
+        "smooth load, closed form": ("load", study.guideway),
         "abrupt load, 40 m of elements": ("load_abrupt", study.struck),
-        "abrupt load, closed form": ("load_abrupt", study.road),
+        "abrupt load, closed form": ("load_abrupt", study.guideway),
     }
     errors: dict[str, FloatArray] = {}
     enough: dict[str, float] = {}
@@ -245,10 +214,12 @@ def truncation_error(study: Study) -> Outcome:
         enough[name] = _enough(cuts, errors[name], error)
         study.told("truncation of the road's response", n + 1, len(sources))
 
-    full = study.driven(study.road, truncation=0.5 / scenario("truck").journey.time_step)
+    full = study.driven(study.guideway, truncation=0.5 / scenario("truck").journey.time_step)
 
     def coupled_error(cut: float) -> float:
-        return relative(study.driven(study.road, truncation=cut).contact_force.values, full.contact_force.values)
+        return relative(
+            study.driven(study.guideway, truncation=cut).contact_force.values, full.contact_force.values
+        )
 
     rigid = []
     for n, cut in enumerate(cuts):
@@ -258,7 +229,7 @@ def truncation_error(study: Study) -> Outcome:
         "road rigid beyond the cut": np.array(rigid),
         "everything cut": np.array([_left_out(full, float(cut)) for cut in cuts]),
     }
-    at_70 = {name: float(values[cuts == TRUNCATION][0]) for name, values in {**errors, **coupled}.items()}
+    at_70 = {name: float(values[cuts == STATED.truncation][0]) for name, values in {**errors, **coupled}.items()}
     needed = _enough(cuts, coupled["road rigid beyond the cut"], coupled_error)
     factor = at_70["everything cut"] / at_70["road rigid beyond the cut"]
     smooth, abrupt = at_70["smooth load, closed form"], at_70["abrupt load, closed form"]
@@ -270,27 +241,33 @@ def truncation_error(study: Study) -> Outcome:
         statements=[
             Statement(
                 '"The error decreases as the truncation frequency increases, and it falls below 10⁻⁴ for the '
-                f'truncation frequencies above {TRUNCATION:g} Hz" (Fig. 11).',
+                f'truncation frequencies above {STATED.truncation:g} Hz" (Fig. 11).',
                 f"With a load below 60 Hz that sets in smoothly: {number(smooth, 2)} in closed form and "
                 f"{number(at_70['smooth load, 40 m of elements'], 2)} from 40 m of finite elements at "
-                f"{TRUNCATION:g} Hz; 10⁻⁴ is reached at {number(enough['smooth load, closed form'], 3)} and "
+                f"{STATED.truncation:g} Hz; 10⁻⁴ is reached at {number(enough['smooth load, closed form'], 3)} and "
                 f"{number(enough['smooth load, 40 m of elements'], 3)} Hz. With a load that is switched abruptly "
                 f"{number(abrupt, 2)} and {number(at_70['abrupt load, 40 m of elements'], 2)}, and 10⁻⁴ only at "
                 f"{number(enough['abrupt load, closed form'], 3)} and "
                 f"{number(enough['abrupt load, 40 m of elements'], 3)} Hz.",
-                verdict(smooth < STATED and abrupt < STATED, smooth < STATED),
+                verdict(
+                    smooth < STATED.truncation_error and abrupt < STATED.truncation_error,
+                    smooth < STATED.truncation_error,
+                ),
                 "holds for both loads; in part for the smooth one",
             ),
             Statement(
-                f'"Therefore, the frequency range of 0–{TRUNCATION:g} Hz is used in the further numerical '
+                f'"Therefore, the frequency range of 0–{STATED.truncation:g} Hz is used in the further numerical '
                 'simulations", '
                 "with the vehicle; (implied) that is as good.",
                 f"In contact force over the whole class A spectrum, a road that counts as rigid beyond "
-                f"{TRUNCATION:g} Hz leaves {number(at_70['road rigid beyond the cut'], 2)}; 10⁻⁴ is reached at "
-                f"{number(needed, 3)} Hz. Cutting the response itself there leaves "
+                f"{STATED.truncation:g} Hz leaves {number(at_70['road rigid beyond the cut'], 2)}; 10⁻⁴ is reached "
+                f"at {number(needed, 3)} Hz. Cutting the response itself there leaves "
                 f"{number(at_70['everything cut'], 2)}, {number(factor, 2)} times as much: through a tyre with a "
                 "dashpot the force does not decay with frequency.",
-                verdict(at_70["road rigid beyond the cut"] < STATED, at_70["road rigid beyond the cut"] < 1e-3),
+                verdict(
+                    at_70["road rigid beyond the cut"] < STATED.truncation_error,
+                    at_70["road rigid beyond the cut"] < 1e-3,
+                ),
                 "holds below 10⁻⁴, in part below 10⁻³",
             ),
         ],
@@ -311,7 +288,11 @@ def truncation_error(study: Study) -> Outcome:
             "higher frequencies taken out; its last twentieth is faded out first, so that the end of the record "
             "does not count.",
         ],
-        substitutes=[SUBSTITUTE, LOAD, "The half truck and the roughness of items 7 to 10, in (b)."],
+        substitutes=[
+            SUBSTITUTES.road,
+            SUBSTITUTES.load,
+            "The half truck and the roughness of items 7 to 10, in (b).",
+        ],
         plots=[
             Plot(
                 "figure_11",
@@ -331,7 +312,11 @@ def truncation_error(study: Study) -> Outcome:
                 "Relative error for some truncations.",
                 "truncation [Hz]",
                 columns,
-                [row for n, row in enumerate(rows) if cuts[n] in (FALLING, TRUNCATION) or n % 10 == 0],
+                [
+                    row
+                    for n, row in enumerate(rows)
+                    if cuts[n] in (STATED.falling, STATED.truncation) or n % 10 == 0
+                ],
             ),
         ],
     )
@@ -339,14 +324,16 @@ def truncation_error(study: Study) -> Outcome:
 
 def _figure_11(cuts: FloatArray, errors: dict[str, FloatArray], coupled: dict[str, FloatArray]) -> Figure:
     figure, (left, right) = canvas(1, 2, 2.9, sharey=True)
-    for (name, values), line in zip(errors.items(), (ORANGE, BLACK, SKY, BLUE), strict=True):
+    for (name, values), line in zip(
+        errors.items(), (STROKES.orange, STROKES.black, STROKES.sky, STROKES.blue), strict=True
+    ):
         curve(left, cuts, values, line, name)
-    for (name, values), line in zip(coupled.items(), (BLUE, PINK), strict=True):
+    for (name, values), line in zip(coupled.items(), (STROKES.blue, STROKES.pink), strict=True):
         curve(right, cuts, values, line, name)
     for ax in (left, right):
-        ax.axhline(STATED, color=GREY, linewidth=0.8, linestyle=":")
-        ax.axvline(TRUNCATION, color=GREY, linewidth=0.8, linestyle=":")
-        ax.set(xlabel="truncation [Hz]", yscale="log", ylim=(1e-9, 2), xlim=(0, HIGHEST))
+        ax.axhline(STATED.truncation_error, color=GREY, linewidth=0.8, linestyle=":")
+        ax.axvline(STATED.truncation, color=GREY, linewidth=0.8, linestyle=":")
+        ax.set(xlabel="truncation [Hz]", yscale="log", ylim=(1e-9, 2), xlim=(0, cuts[-1]))
         ax.legend()
     left.set_ylabel("relative error (L2)")
     title(left, "deflection under the moving load")
@@ -356,13 +343,13 @@ def _figure_11(cuts: FloatArray, errors: dict[str, FloatArray], coupled: dict[st
 
 def _enough(cuts: FloatArray, values: FloatArray, error: Callable[[float], float]) -> float:
     """Find from where on an error is below the stated one, to half a per cent [Hz]; nan: not up to the last cut."""
-    above = np.flatnonzero(values > STATED)
+    above = np.flatnonzero(values > STATED.truncation_error)
     if not above.size or above[-1] + 1 == cuts.size:
         return float("nan") if above.size else float(cuts[0])
     low, high = (float(cut) for cut in cuts[above[-1] : above[-1] + 2])
     while high > 1.005 * low:
         middle = (low * high) ** 0.5
-        low, high = (middle, high) if error(middle) > STATED else (low, middle)
+        low, high = (middle, high) if error(middle) > STATED.truncation_error else (low, middle)
     return high
 
 
@@ -370,7 +357,8 @@ def _left_out(full: xr.Dataset, cut: float) -> float:
     """Share of the contact force beyond a frequency."""
     force = full.contact_force.values
     step = full.attrs["time_step"]
-    count = int(FADED * len(force))
+    # The end of the record fades out: it must not count.
+    count = int(0.05 * len(force))
     force = force.copy()
     force[-count:] *= (0.5 * (1 + np.cos(np.pi * np.arange(1, count + 1) / count)))[:, None]
     spectrum = np.fft.rfft(force, 2 * len(force), axis=0)
@@ -391,14 +379,16 @@ def costs(study: Study) -> Outcome:
     """Table 1: multiplications and times of three methods, and their errors."""
     case = scenario("load")
     step, samples = case.journey.time_step, case.journey.samples
-    grid = SpectralGrid(samples=samples, time_step=step, truncation=TRUNCATION, settling=samples * step)
-    unpadded, n, memory = round(TRUNCATION * samples * step) + 1, study.newmark_road.dofs, len(study.struck.samples)
+    grid = SpectralGrid(samples=samples, time_step=step, truncation=STATED.truncation, settling=samples * step)
+    unpadded, memory = round(STATED.truncation * samples * step) + 1, len(study.struck.samples)
+    n = study.finite.dofs
     full, bands = operations.newmark_full(n, samples), operations.newmark_banded(n, samples)
     convolved = operations.duhamel(samples, memory)
     with_transforms = operations.moving_frf(grid.kept) + 2 * operations.real_fft(grid.padded)
     seconds, errors = _measured(study, grid)
+    few = 200  # steps with full matrices that are timed
     dense_setup, dense_record, dense_apart = _with_full_matrices(
-        study.newmark_road, study.force, case.journey.speed, step
+        study.finite, study.force, case.journey.speed, step, few
     )
     nan = float("nan")
     ways = {
@@ -459,12 +449,12 @@ def costs(study: Study) -> Outcome:
             f"Multiplications, n = {n} unknowns, N = {samples} steps. Newmark with full matrices, factorised "
             "once: N (3 n² + 11 n + 17). With bands, as this package steps: N (31 n + 37). Duhamel: m N − m (m − "
             f"1)/2 with the m = {memory} samples recorded on 40 m. Moving FRF: 4 for each of the f T + 1 = "
-            f"{unpadded} frequencies up to {TRUNCATION:g} Hz; padded for the response to die away, {grid.kept} of "
-            f"them, and two transforms of {grid.padded} points. A division counts as a multiplication; what is "
-            "prepared once does not count. tests/paper/test_operations.py counts the multiplications of small "
-            "instrumented runs.",
+            f"{unpadded} frequencies up to {STATED.truncation:g} Hz; padded for the response to die away, "
+            f"{grid.kept} of them, and two transforms of {grid.padded} points. A division counts as a "
+            "multiplication; what is prepared once does not count. tests/paper/test_operations.py counts the "
+            "multiplications of small instrumented runs.",
             "Times: medians, in turns, one thread, steps compiled where numba is installed. Newmark with full "
-            f"matrices is timed over {FEW} steps, in which it differs from bands by {number(dense_apart, 1)}. "
+            f"matrices is timed over {few} steps, in which it differs from bands by {number(dense_apart, 1)}. "
             "Set-up, once for a road, speed and step: factorising, striking, or evaluating the moving FRF at all "
             "frequencies. Errors (relative L2): "
             + (
@@ -475,7 +465,7 @@ def costs(study: Study) -> Outcome:
             f"Bands alone make Newmark's method {number(full / bands, 2)} times cheaper than the full matrices of "
             "a textbook.",
         ],
-        substitutes=[SUBSTITUTE, LOAD, "The paper's own figures in Table 1 are not in its text."],
+        substitutes=[SUBSTITUTES.road, SUBSTITUTES.load, "The paper's own figures in Table 1 are not in its text."],
         tables=[
             DataTable(
                 "table_1",
@@ -496,32 +486,32 @@ def costs(study: Study) -> Outcome:
 def _measured(study: Study, grid: SpectralGrid) -> tuple[dict[str, float], dict[str, float]]:
     """Measure times of all ways and of their preparation [s], and errors of the responses."""
     case = scenario("load")
-    road, forces = study.newmark_road, study.force
+    finite, forces = study.finite, study.force
     speed, step = case.journey.speed, case.journey.time_step
     kept = slice(grid.kept)
     frf = {
         name: guideway.moving_frf([0.0], speed, grid.omega(kept)) * grid.compliance(kept)[:, None]
-        for name, guideway in (("moving FRF", study.struck), ("closed form", study.road))
+        for name, guideway in (("moving FRF", study.struck), ("closed form", study.guideway))
     }
     records: dict[str, Callable[[], FloatArray]] = {
-        "Newmark": lambda: newmark_loads(road, forces, [0.0], speed=speed, time_step=step).deflection.values,
+        "Newmark": lambda: newmark_loads(finite, forces, [0.0], speed=speed, time_step=step).deflection.values,
         "Duhamel": lambda: (
             duhamel_loads(study.struck, forces, [0.0], speed=speed, time_step=step).deflection.values
         ),
         "moving FRF": lambda: _product(grid, frf["moving FRF"], forces),
     }
     once: dict[str, Callable[[], object]] = {
-        "factorising": lambda: newmark_loads(road, forces[:2], [0.0], speed=speed, time_step=step),
-        "striking": lambda: struck_track(study.road, speed=speed, offsets=[0.0], plain=True),
+        "factorising": lambda: newmark_loads(finite, forces[:2], [0.0], speed=speed, time_step=step),
+        "striking": lambda: struck_track(study.guideway, speed=speed, offsets=[0.0], plain=True),
         "transforming": lambda: study.struck.moving_frf([0.0], speed, grid.omega(kept)),
-        "closed form": lambda: study.road.moving_frf([0.0], speed, grid.omega(kept)),
+        "closed form": lambda: study.guideway.moving_frf([0.0], speed, grid.omega(kept)),
     }
     study.told("times of three methods", 0, 1)
     with quiet():
         seconds = timed({**records, **once})
         seconds["Newmark"] -= seconds["factorising"]
         wanted = (
-            study.under_load(study.road).deflection.values
+            study.under_load(study.guideway).deflection.values
             if study.quick
             else converged(case, study.progress).quantities["deflection"]
         )
@@ -536,20 +526,20 @@ def _product(grid: SpectralGrid, frf: ComplexArray, forces: FloatArray) -> Float
 
 
 def _with_full_matrices(
-    road: FiniteGuideway, forces: FloatArray, speed: float, step: float
+    finite: FiniteGuideway, forces: FloatArray, speed: float, step: float, few: int
 ) -> tuple[float, float, float]:
     """Step as in a textbook: time to factorise and of a record [s], difference from bands in the first steps."""
-    mass, damping, stiffness = (matrix.toarray() for matrix in (road.mass, road.damping, road.stiffness))
+    mass, damping, stiffness = (matrix.toarray() for matrix in (finite.mass, finite.damping, finite.stiffness))
     a0, a1, a2 = 4 / step**2, 2 / step, 4 / step
-    rows = road.rows(speed * step * np.arange(FEW)).toarray()
-    deflection = np.zeros((FEW, 1))
-    u, v = np.zeros((2, road.dofs))
+    rows = finite.rows(speed * step * np.arange(few)).toarray()
+    deflection = np.zeros((few, 1))
+    u, v = np.zeros((2, finite.dofs))
     a = np.linalg.solve(mass, rows[0] * forces[0])
     with threadpool_limits(limits=1):
         first = perf_counter()
         factor = cho_factor(stiffness + a0 * mass + a1 * damping)
         began = perf_counter()
-        for n in range(1, FEW):
+        for n in range(1, few):
             right = rows[n] * forces[n] + mass @ (a0 * u + a2 * v + a) + damping @ (a1 * u + v)
             new = cho_solve(factor, right)
             acceleration = a0 * (new - u) - a2 * v - a
@@ -557,5 +547,5 @@ def _with_full_matrices(
             u, a = new, acceleration
             deflection[n] = rows[n] @ u
         seconds = perf_counter() - began
-    stepped = newmark_loads(road, forces[:FEW], [0.0], speed=speed, time_step=step).deflection.values
-    return began - first, seconds * len(forces) / FEW, relative(deflection, stepped)
+    stepped = newmark_loads(finite, forces[:few], [0.0], speed=speed, time_step=step).deflection.values
+    return began - first, seconds * len(forces) / few, relative(deflection, stepped)

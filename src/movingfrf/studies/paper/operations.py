@@ -10,9 +10,6 @@ from __future__ import annotations
 from movingfrf._basics.checks import checking
 from movingfrf.stepping.marching import FEWEST
 
-# Half-width of the bands of a road; `reference.compiled`, which has it too, cannot be read without numba.
-WIDTH = 3
-
 
 def newmark_full(dofs: int, steps: int) -> int:
     """Count for Newmark's method with full matrices, under one load that is observed where it acts.
@@ -64,7 +61,7 @@ def newmark_full(dofs: int, steps: int) -> int:
 
 
 def newmark_banded(dofs: int, steps: int) -> int:
-    """Count for Newmark's method as `reference.compiled.march` has it, under one load observed where it acts.
+    """Count for Newmark's method as `stepping.compiled.march` has it, under one load observed where it acts.
 
     A road that stands still, bands of half-width 3, average acceleration, no vehicle. Each step takes, as the loop
     is written (n unknowns),
@@ -108,12 +105,13 @@ def newmark_banded(dofs: int, steps: int) -> int:
     _require_whole(steps=steps)
     _require_whole(FEWEST, dofs=dofs)
     travelled, factors, functions, load, deflection = 2, 3, 2 * 20, 8, 2 * 4
+    width = 3  # half-width of the bands; the compiled loop, which has it too, cannot be read without numba
     # At either end of the matrix, three rows lack 3, 2 and 1 of the entries that the others have.
-    missing = WIDTH * (WIDTH + 1) // 2
-    product = 2 * ((2 * WIDTH + 1) * dofs - 2 * missing)
+    missing = width * (width + 1) // 2
+    product = 2 * ((2 * width + 1) * dofs - 2 * missing)
     core = 4 - dofs % 2
     half = (dofs - core) // 2
-    solution = 2 * (WIDTH + WIDTH + 1) * half + 2 * missing + core**2
+    solution = 2 * (width + width + 1) * half + 2 * missing + core**2
     once = travelled + factors + functions + load + deflection
     return steps * (once + 5 * dofs + product + solution + 5 * dofs)
 

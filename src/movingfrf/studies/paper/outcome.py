@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from movingfrf.reports.tables import Column
@@ -12,11 +13,29 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-HOLDS, PARTLY, FAILS = "holds", "holds in part", "does not hold"
-# Nothing to judge: the paper shows without stating, or the quick version does not go far enough; and what is shown
-# beyond the paper.
-UNJUDGED, SHOWN = "not judged", "shown"
-JUDGED = (HOLDS, PARTLY, FAILS)
+class Verdict(StrEnum):
+    """Whether what the paper states holds, in the words of the page."""
+
+    HOLDS = "holds"
+    PARTLY = "holds in part"
+    FAILS = "does not hold"
+    # Nothing to judge: the paper shows without stating, or the quick version does not go far enough.
+    UNJUDGED = "not judged"
+    SHOWN = "shown"  # beyond the paper
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Agreement:
+    """Up to where two results are called alike: conventions, which the rules of the statements repeat in words."""
+
+    line_width: float = 5e-3  # a deviation over the range drawn: one that is wider than a line is visible
+    one_curve: float = 1e-2  # relative L2 difference of two curves that are one to the eye
+    close: float = 0.2  # relative L2 difference of two curves that are close
+    suffices: float = 1e-3  # an error that is none
+    considerable: float = 1e-2  # an error that is no longer small
+
+
+AGREEMENT = Agreement()
 
 Cell = float | int | str
 
@@ -29,7 +48,7 @@ class Statement(NamedTuple):
 
     stated: str
     found: str
-    verdict: str
+    verdict: Verdict
     rule: str = ""  # when it holds, and when in part
 
 
@@ -84,6 +103,6 @@ class Outcome:
     tables: Sequence[DataTable] = ()
 
 
-def verdict(holds: bool, partly: bool = False) -> str:
-    """Put a judgement into words."""
-    return HOLDS if holds else PARTLY if partly else FAILS
+def verdict(holds: bool, partly: bool = False) -> Verdict:
+    """Judge a statement that can be judged."""
+    return Verdict.HOLDS if holds else Verdict.PARTLY if partly else Verdict.FAILS

@@ -18,46 +18,15 @@ from movingfrf.reports.tables import Column
 from movingfrf.roughness.profile import Profile
 from movingfrf.stepping.coupled import cdfm
 from movingfrf.stepping.finite_plate import finite_plate, struck_plate
-from movingfrf.studies.paper.drawing import (
-    BLACK,
-    BLUE,
-    LINES,
-    ORANGE,
-    SKY,
-    canvas,
-    curve,
-    legend_outside,
-    logarithmic,
-    title,
-)
-from movingfrf.studies.paper.outcome import SHOWN, DataTable, Outcome, Plot, Statement, verdict
-from movingfrf.studies.paper.road import SUBSTITUTE
+from movingfrf.studies.paper.drawing import STROKES, canvas, curve, legend_outside, logarithmic, title
+from movingfrf.studies.paper.outcome import AGREEMENT, DataTable, Outcome, Plot, Statement, Verdict, verdict
+from movingfrf.studies.paper.stated import STATED, SUBSTITUTES
 from movingfrf.studies.paper.study import Study, quiet, relative, scenario
-from movingfrf.studies.paper.vehicle import ONE_CURVE, ROUGHNESS, VEHICLE
 from movingfrf.vehicles.vehicle import Vehicle
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
-
-
-# Width of the road [m] (stated), Poisson's ratio of asphalt.
-WIDTH, POISSON = 3.0, 0.35
-
-# Transverse stiffnesses, as multiples of that of the isotropic plate.
-STIFFNESSES = (1.0, 10.0, 100.0, 1e3, 1e4, 1e6)
-
-# The window of road that travels along: how far it reaches around the vehicle, and its absorbing ends [m].
-AROUND, ABSORBING = 16.0, 10.0
-
-ZOOM = (12.0, 13.0)
-
-PLATE = (
-    "The three-dimensional model is not described further. Substitute: an isotropic thin plate with free edges "
-    f"(Poisson's ratio {POISSON:g}) on a viscoelastic foundation, {WIDTH:g} m wide, which carries, weighs and "
-    "bends per width what the beam does on the whole; the half truck with half of each axle at either side, 2 m "
-    "apart, and a roll inertia (scenario truck_3d)."
-)
 
 
 @dataclass(frozen=True)
@@ -93,12 +62,12 @@ class Models:
         """Strike 40 m of plate as in the paper: the moving FRF between all contacts."""
         with quiet():
             return struck_plate(
-                self.study.road,
-                width=WIDTH,
+                self.study.guideway,
+                width=STATED.width,
                 speed=self.study.speed,
                 vehicle=self.vehicle,
                 across=self.across,
-                poisson=POISSON,
+                poisson=SUBSTITUTES.poisson,
                 transverse=transverse,
                 plain=True,
                 progress=self.study.progress,
@@ -113,14 +82,15 @@ class Models:
         case, at = scenario(name), self.vehicle.positions
         assert case.vehicle is not None
         assert case.road is not None
+        around = 16.0  # how far the plate reaches around the vehicle [m]
         plate = finite_plate(
-            self.study.road,
-            width=WIDTH,
-            first=float(at.min()) - AROUND,
-            last=float(at.max()) + AROUND,
+            self.study.guideway,
+            width=STATED.width,
+            first=float(at.min()) - around,
+            last=float(at.max()) + around,
             across=self.across,
-            poisson=POISSON,
-            absorbing=ABSORBING,
+            poisson=SUBSTITUTES.poisson,
+            absorbing=10.0,  # of that, at either end
             travels=True,
         )
         return cdfm(
@@ -134,11 +104,11 @@ class Models:
             progress=self.study.progress,
         )
 
-    def basin(self, poisson: float = POISSON, transverse: float = 1.0) -> Basin:
+    def basin(self, poisson: float = SUBSTITUTES.poisson, transverse: float = 1.0) -> Basin:
         """Deflection of the plate at rest under the vehicle's weight."""
         plate = finite_plate(
-            self.study.road,
-            width=WIDTH,
+            self.study.guideway,
+            width=STATED.width,
             first=-20.0,
             last=20.0,
             element=0.5 if self.study.quick else 0.25,
@@ -149,7 +119,8 @@ class Models:
         )
         at, aside = self.vehicle.positions, self.vehicle.across
         deflection = splu(plate.stiffness).solve(plate.rows(at, 0, aside).T @ self.vehicle.static_loads)
-        along, across = np.union1d(np.linspace(-8.0, 8.0, 161), at), np.linspace(-0.5 * WIDTH, 0.5 * WIDTH, 61)
+        along = np.union1d(np.linspace(-8.0, 8.0, 161), at)
+        across = np.linspace(-0.5 * STATED.width, 0.5 * STATED.width, 61)
         mesh = np.meshgrid(along, across, indexing="ij")
         values = (plate.rows(mesh[0].ravel(), 0, mesh[1].ravel()) @ deflection).reshape(mesh[0].shape)
         front = along == at[0]
@@ -158,14 +129,14 @@ class Models:
             across,
             values,
             float(np.interp(aside[0], across, values[front][0])),
-            float(np.trapezoid(values[front][0], across) / WIDTH),
+            float(np.trapezoid(values[front][0], across) / STATED.width),
         )
 
     @cached_property
     def beam(self) -> float:
         """Deflection of the plane road at rest under the front axle [m]."""
         at = self.vehicle.positions
-        return float(self.study.road.moving_frf(at[0] - at, 0.0, [0.0])[0].real @ self.vehicle.static_loads)
+        return float(self.study.guideway.moving_frf(at[0] - at, 0.0, [0.0])[0].real @ self.vehicle.static_loads)
 
 
 class Basin(NamedTuple):
@@ -213,7 +184,8 @@ def in_three_dimensions(study: Study) -> Outcome:
     """Compare vehicle and road in three dimensions with the plane model."""
     models = Models(study)
     flat = models.driven(study.struck, "truck")
-    stiffnesses = STIFFNESSES[:1] + STIFFNESSES[-1:] if study.quick else STIFFNESSES
+    # Transverse stiffnesses, as multiples of that of the isotropic plate.
+    stiffnesses = (1.0, 1e6) if study.quick else (1.0, 10.0, 100.0, 1e3, 1e4, 1e6)
     struck = models.struck()
     same, apart = models.driven(struck, "truck_3d"), models.driven(struck, "truck_3d_paths")
     found, basins = {1.0: _differences(paired(same), plane(flat))}, {1.0: models.basin()}
@@ -245,7 +217,7 @@ def in_three_dimensions(study: Study) -> Outcome:
                 f"displacement of the body by {number(real['bounce'], 2)}, the acceleration of the wheels by "
                 f"{number(real['wheel acceleration'], 2)}), contact forces by {number(real['contact force'], 2)}; "
                 f"the road's dynamic deflection under the wheels differs by {number(real['deflection'], 2)}.",
-                verdict(max(*vehicle.values(), real["contact force"]) < ONE_CURVE),
+                verdict(max(*vehicle.values(), real["contact force"]) < AGREEMENT.one_curve),
                 "holds below 1 %, the road's deflection apart",
             ),
             Statement(
@@ -256,7 +228,7 @@ def in_three_dimensions(study: Study) -> Outcome:
                 f"the sum of forces ({number(from_mean['contact force'], 1)}), but not that left and right forces "
                 f"differ by {number(100 * share, 2)} % of what their sum varies by, and that the body rolls by up "
                 f"to {number(1e3 * roll, 2)} mrad.",
-                SHOWN,
+                Verdict.SHOWN,
             ),
         ],
         numbers={
@@ -281,8 +253,8 @@ def in_three_dimensions(study: Study) -> Outcome:
             f"{number(basin.wheel / basin.average, 4)} times the section's average in the wheel paths. That "
             f"average is {number(basin.average / models.beam, 4)} times the plane model's deflection, the rest "
             f"being Poisson's effect ({number(straight.average / models.beam, 4)} with ν = 0). The vehicle feels "
-            f"less of it than the road, which is {number(_road_over_tyres(study, models), 2)} times as stiff as "
-            "the tyres of the front axle.",
+            f"less of it than the road, which is {number(_guideway_over_tyres(study, models), 2)} times as stiff "
+            "as the tyres of the front axle.",
             "Towards the stiff limit the dynamic differences level off at what steps of 1 ms make of the fast "
             "vibrations of a stiff section; the deflection at rest does not.",
             *(
@@ -292,10 +264,10 @@ def in_three_dimensions(study: Study) -> Outcome:
             ),
         ],
         substitutes=[
-            SUBSTITUTE,
-            PLATE,
-            VEHICLE,
-            ROUGHNESS,
+            SUBSTITUTES.road,
+            SUBSTITUTES.plate,
+            SUBSTITUTES.vehicle,
+            SUBSTITUTES.roughness,
             "Different paths: two realisations without anything in common, which real roads are not; the extreme "
             "case.",
         ],
@@ -347,9 +319,9 @@ def _named(prefix: str, values: dict[str, float]) -> dict[str, float]:
     return {f"{prefix}_{name.replace(' ', '_')}": value for name, value in values.items()}
 
 
-def _road_over_tyres(study: Study, models: Models) -> float:
+def _guideway_over_tyres(study: Study, models: Models) -> float:
     """Point stiffness of the plane road at rest over that of the front axle's tyres."""
-    compliance = float(study.road.moving_frf([0.0], 0.0, [0.0])[0, 0].real)
+    compliance = float(study.guideway.moving_frf([0.0], 0.0, [0.0])[0, 0].real)
     return 1 / (compliance * 2 * models.vehicle.contacts[0].stiffness)
 
 
@@ -362,7 +334,7 @@ def _figure_18(models: Models, basin: Basin) -> Figure:
     top.grid(False)
     figure.colorbar(drawn, ax=top, label="deflection [mm]")
     here = basin.deflection[basin.along == models.vehicle.positions[0]][0]
-    curve(section, basin.across, 1e3 * here, BLUE, "plate")
+    curve(section, basin.across, 1e3 * here, STROKES.blue, "plate")
     section.axhline(1e3 * basin.average, color=PALETTE[0], linewidth=0.9, linestyle="--", label="its average")
     section.axhline(1e3 * models.beam, color=INK, linewidth=1.0, label="plane model")
     section.plot(models.vehicle.across[:2], [1e3 * basin.wheel] * 2, marker="s", **wheels)
@@ -374,7 +346,7 @@ def _figure_18(models: Models, basin: Basin) -> Figure:
 
 def _shown(models: Models) -> tuple[float, float]:
     """Choose a second of the journey to show [s]."""
-    begin = min(ZOOM[0], models.duration - 1.0)
+    begin = min(12.0, models.duration - 1.0)
     return begin, begin + 1.0
 
 
@@ -396,9 +368,9 @@ def _figure_of_responses(
     )
     for ax, (name, scale, label) in zip(axes, quantities, strict=True):
         for values, line, what in (
-            (flat, BLACK, "2-D, moving FRF"),
-            (stepped, SKY, "3-D, CDFM"),
-            (found, ORANGE, "3-D, moving FRF"),
+            (flat, STROKES.black, "2-D, moving FRF"),
+            (stepped, STROKES.sky, "3-D, CDFM"),
+            (found, STROKES.orange, "3-D, moving FRF"),
         ):
             curve(ax, time[some], scale * values[name][some, 0], line, what)
         ax.set(xlabel="time [s]", ylabel=label, xlim=interval)
@@ -410,7 +382,7 @@ def _figure_of_limits(models: Models, found: dict[float, dict[str, float]], apar
     figure, (grows, rolls, forces) = canvas(1, 3, 3.0)
     stiffnesses, time, interval = list(found), apart.time.values, _shown(models)
     some = (time >= interval[0]) & (time <= interval[1])
-    for name, line in zip(found[1.0], LINES, strict=True):
+    for name, line in zip(found[1.0], STROKES.coloured, strict=True):
         values = [found[s][name] for s in stiffnesses]
         grows.plot(stiffnesses, values, **line._asdict(), marker="o", markersize=3, label=name)
     grows.set(xscale="log", xlabel="transverse stiffness,\ntimes isotropic", ylabel="difference from 2-D")
@@ -418,9 +390,9 @@ def _figure_of_limits(models: Models, found: dict[float, dict[str, float]], apar
     figure.legend(
         *grows.get_legend_handles_labels(), loc="outside upper left", ncols=3, fontsize=6.5, title="in (a)"
     )
-    curve(rolls, time[some], 1e3 * apart.motion.values[some, 2], BLUE)
+    curve(rolls, time[some], 1e3 * apart.motion.values[some, 2], STROKES.blue)
     rolls.set(xlabel="time [s]", ylabel="roll [mrad]", xlim=interval)
-    for column, (line, side) in enumerate(((BLUE, "left"), (ORANGE, "right"))):
+    for column, (line, side) in enumerate(((STROKES.blue, "left"), (STROKES.orange, "right"))):
         curve(forces, time[some], 1e-3 * apart.contact_force.values[some, column], line, f"front {side}")
     forces.set(xlabel="time [s]", ylabel="dynamic contact force [kN]", xlim=interval)
     low, high = forces.get_ylim()

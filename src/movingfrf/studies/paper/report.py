@@ -19,27 +19,17 @@ from movingfrf.reports.page import rendered
 from movingfrf.reports.tables import Column, Row, Table
 from movingfrf.studies.paper.drawing import drawn, journal
 from movingfrf.studies.paper.items import ITEMS, Reproduction, name_of
-from movingfrf.studies.paper.outcome import (
-    FAILS,
-    HOLDS,
-    JUDGED,
-    PARTLY,
-    SHOWN,
-    UNJUDGED,
-    Cell,
-    DataTable,
-    Outcome,
-    Statement,
-)
+from movingfrf.studies.paper.outcome import Cell, DataTable, Outcome, Statement, Verdict
 from movingfrf.studies.paper.study import SCENARIOS, scenario
 
-PAPER = "Fast calculation of vehicle–road coupled response by the moving FRF"
-
-# What is written beside the page and the numbers.
-FOLDERS = ("figures", "tables", "scenarios")
-
-# Verdict → class of its colour.
-KINDS = {HOLDS: "holds", PARTLY: "part", FAILS: "not", UNJUDGED: "open", SHOWN: "open"}
+# Verdict → class of its colour on the page.
+CSS_CLASSES = {
+    Verdict.HOLDS: "holds",
+    Verdict.PARTLY: "part",
+    Verdict.FAILS: "not",
+    Verdict.UNJUDGED: "open",
+    Verdict.SHOWN: "open",
+}
 
 NOTE = (
     "The text of the paper is at hand without its equations, figures and parameter tables. Words in quotation "
@@ -48,7 +38,7 @@ NOTE = (
 )
 
 
-class Line(NamedTuple):
+class VerdictLine(NamedTuple):
     """One statement of the verdict, with the item it belongs to."""
 
     name: str
@@ -73,7 +63,8 @@ def write(found: Reproduction, folder: Path, progress: Progress = silent) -> Non
     progress : callable
         Called with the name of a stage and the fraction of it that is done.
     """
-    for name in FOLDERS:
+    folders = ("figures", "tables", "scenarios")
+    for name in folders:
         (folder / name).mkdir()
     drawings: dict[str, str] = {}
     plots = [plot for outcome in found.outcomes.values() for plot in outcome.plots]
@@ -83,19 +74,19 @@ def write(found: Reproduction, folder: Path, progress: Progress = silent) -> Non
             drawings[plot.name], bitmap = drawn(plot.figure, plot.name)
             (folder / "figures" / f"{plot.name}.svg").write_text(drawings[plot.name], encoding="utf-8")
             (folder / "figures" / f"{plot.name}.png").write_bytes(bitmap)
-    (folder / "report.html").write_text(page(found, drawings), encoding="utf-8")
+    (folder / "report.html").write_text(as_html(found, drawings), encoding="utf-8")
     for outcome in found.outcomes.values():
         for table in outcome.tables:
             (folder / "tables" / f"{table.name}.csv").write_text(as_csv(table), encoding="utf-8")
     for name in SCENARIOS:
         (folder / "scenarios" / f"{name}.toml").write_text(scenario(name).text, encoding="utf-8")
     (folder / "paper.json").write_text(as_json(found), encoding="utf-8")
-    for name in FOLDERS:
+    for name in folders:
         if not any((folder / name).iterdir()):
             (folder / name).rmdir()
 
 
-def page(found: Reproduction, drawings: Mapping[str, str]) -> str:
+def as_html(found: Reproduction, drawings: Mapping[str, str]) -> str:
     """Write the page.
 
     Parameters
@@ -116,7 +107,7 @@ def page(found: Reproduction, drawings: Mapping[str, str]) -> str:
         "paper.html.j2",
         title="The moving FRF, reproduced",
         version=VERSION,
-        summary=summary(found),
+        summary=tally(found),
         note=NOTE,
         claims=list(_lines(found, claims)),
         others=others,
@@ -125,7 +116,7 @@ def page(found: Reproduction, drawings: Mapping[str, str]) -> str:
     )
 
 
-def summary(found: Reproduction) -> str:
+def tally(found: Reproduction) -> str:
     """Count what holds, in sentences.
 
     Parameters
@@ -139,24 +130,22 @@ def summary(found: Reproduction) -> str:
         Sentences.
     """
     verdicts = [statement.verdict for outcome in found.outcomes.values() for statement in outcome.statements]
-    judged = [verdict for verdict in verdicts if verdict in JUDGED]
-    held, partly, failed = (verdicts.count(verdict) for verdict in JUDGED)
+    held, partly, failed = (verdicts.count(one) for one in (Verdict.HOLDS, Verdict.PARTLY, Verdict.FAILS))
     words = (
-        f'"{PAPER}", item by item. Statements that can be judged: {len(judged)}, of which {held} hold, {partly} '
-        "in part "
-        f"and {failed} not."
+        '"Fast calculation of vehicle–road coupled response by the moving FRF", item by item. Statements that can '
+        f"be judged: {held + partly + failed}, of which {held} hold, {partly} in part and {failed} not."
     )
     return words + (" Quick version: fewer points, shorter journeys." if found.quick else "")
 
 
-def _lines(found: Reproduction, keys: list[str]) -> Iterator[Line]:
+def _lines(found: Reproduction, keys: list[str]) -> Iterator[VerdictLine]:
     for key in keys:
         for statement in found.outcomes[key].statements:
-            yield Line(name_of(key), f"item-{key}", _statement(statement))
+            yield VerdictLine(name_of(key), f"item-{key}", _statement(statement))
 
 
 def _statement(statement: Statement) -> dict[str, str]:
-    return {**statement._asdict(), "kind": KINDS[statement.verdict]}
+    return {**statement._asdict(), "kind": CSS_CLASSES[statement.verdict]}
 
 
 def _item(key: str, found: Reproduction, drawings: Mapping[str, str]) -> dict[str, Any]:
@@ -179,11 +168,13 @@ def _item(key: str, found: Reproduction, drawings: Mapping[str, str]) -> dict[st
             }
             for plot in outcome.plots
         ],
-        "tables": [{**readable(table)._asdict(), "name": table.name} for table in outcome.tables if table.on_page],
+        "tables": [
+            {**readable_table(table)._asdict(), "name": table.name} for table in outcome.tables if table.on_page
+        ],
     }
 
 
-def readable(table: DataTable) -> Table:
+def readable_table(table: DataTable) -> Table:
     """Write the values of a table for reading.
 
     Parameters
@@ -298,4 +289,4 @@ def verdict_table(found: Reproduction) -> Table:
         )
         for key, outcome in found.outcomes.items()
     ]
-    return Table(summary(found), "", [Column("verdict", "")], rows)
+    return Table(tally(found), "", [Column("verdict", "")], rows)

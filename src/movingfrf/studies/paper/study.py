@@ -32,7 +32,8 @@ from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import struck_track
 from movingfrf.stepping.moving_loads import newmark_loads
 from movingfrf.studies.comparison.comparison import Comparison, compare
-from movingfrf.studies.comparison.methods import WITH_VEHICLE, Case, elements
+from movingfrf.studies.comparison.methods import FOR_VEHICLE, Case, elements
+from movingfrf.studies.paper.stated import STATED, SUBSTITUTES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,15 +41,6 @@ if TYPE_CHECKING:
 
 # The scenarios that ship with the package.
 SCENARIOS = ("load", "load_abrupt", "truck", "truck_times", "truck_narrow", "truck_3d", "truck_3d_paths")
-
-# The paper's truncation [Hz], and the frequency beyond which its moving FRF falls [Hz].
-TRUNCATION, FALLING = 70.0, 17.0
-
-# The road that Newmark's method is applied to in the paper: 120 m and 240 elements; here the load starts so far in.
-NEWMARK_LENGTH, NEWMARK_ELEMENT, NEWMARK_START = 120.0, 0.5, 10.0
-
-# Runs that are timed, alternately.
-RUNS = 5
 
 
 @cache
@@ -89,8 +81,8 @@ class Study:
         self.progress(stage, done / of)
 
     @cached_property
-    def road(self) -> Track:
-        """The road, 3 m wide."""
+    def guideway(self) -> Track:
+        """The paper's road, 3 m wide and without ends."""
         guideway = scenario("truck").guideway
         assert isinstance(guideway, Track)
         return guideway
@@ -125,15 +117,19 @@ class Study:
     def _struck(self, *, plain: bool) -> SampledGuideway:
         with quiet():
             return struck_track(
-                self.road, speed=self.speed, offsets=self.offsets, plain=plain, progress=self.progress
+                self.guideway, speed=self.speed, offsets=self.offsets, plain=plain, progress=self.progress
             )
 
     @cached_property
-    def newmark_road(self) -> FiniteGuideway:
+    def finite(self) -> FiniteGuideway:
         """The paper's road for Newmark's method: 480 unknowns."""
-        first = -NEWMARK_START
+        first = -SUBSTITUTES.newmark_start
         return finite_track(
-            self.road, first=first, last=first + NEWMARK_LENGTH, element=NEWMARK_ELEMENT, ends="pinned"
+            self.guideway,
+            first=first,
+            last=first + STATED.newmark_length,
+            element=STATED.newmark_element,
+            ends="pinned",
         )
 
     @cached_property
@@ -163,13 +159,13 @@ class Study:
     def by_newmark(self) -> xr.Dataset:
         """Deflection under the moving load, by Newmark's method on the paper's road."""
         journey = scenario("load").journey
-        return newmark_loads(self.newmark_road, self.force, [0.0], speed=journey.speed, time_step=journey.time_step)
+        return newmark_loads(self.finite, self.force, [0.0], speed=journey.speed, time_step=journey.time_step)
 
     def driven(
         self,
         guideway: Guideway,
         name: str = "truck",
-        truncation: float | None = TRUNCATION,
+        truncation: float | None = STATED.truncation,
         *,
         duration: float | None = None,
         profile: Profile | None = None,
@@ -199,7 +195,7 @@ class Study:
     @cached_property
     def in_closed_form(self) -> xr.Dataset:
         """Response of vehicle and road with the moving FRF in closed form."""
-        return self.driven(self.road)
+        return self.driven(self.guideway)
 
     @cached_property
     def by_cdfm(self) -> xr.Dataset:
@@ -215,7 +211,7 @@ class Study:
         case = scenario("truck")
         of = Case(scenario=case, time_step=case.journey.time_step, element=elements(case)[-1])
         with quiet():
-            return WITH_VEHICLE[method].prepare(of)()
+            return FOR_VEHICLE[method].prepare(of)()
 
     @cached_property
     def compared(self) -> Comparison:
@@ -244,9 +240,9 @@ def quiet() -> Iterator[None]:
         yield
 
 
-def closed_form(road: Track, frequency: FloatArray, offsets: FloatArray, speed: float) -> ComplexArray:
+def closed_form(guideway: Track, frequency: FloatArray, offsets: FloatArray, speed: float) -> ComplexArray:
     """Sum the residues of the moving FRF at real frequencies [m/N], shape (frequency, offset)."""
-    return road.moving_frf(offsets, speed, 2 * np.pi * frequency)
+    return guideway.moving_frf(offsets, speed, 2 * np.pi * frequency)
 
 
 def relative(found: FloatArray, wanted: FloatArray) -> float:
@@ -254,8 +250,8 @@ def relative(found: FloatArray, wanted: FloatArray) -> float:
     return float((np.linalg.norm(found - wanted, axis=0) / np.linalg.norm(wanted, axis=0)).max())
 
 
-def timed(ways: Mapping[str, Callable[[], object]], runs: int = RUNS) -> dict[str, float]:
-    """Median time of each way [s], on one thread, after one run that does not count, taken in turns."""
+def timed(ways: Mapping[str, Callable[[], object]], runs: int = 5) -> dict[str, float]:
+    """Median time of each way [s] over some runs, on one thread, after one that does not count, taken in turns."""
     with threadpool_limits(limits=1):
         for way in ways.values():
             way()

@@ -16,41 +16,16 @@ from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.spectra.iso import IsoRoad
 from movingfrf.studies.comparison.convergence import TARGETS
 from movingfrf.studies.comparison.methods import elements
-from movingfrf.studies.paper.drawing import (
-    BLACK,
-    BLUE,
-    ORANGE,
-    SKY,
-    canvas,
-    curve,
-    legend_outside,
-    logarithmic,
-    title,
-)
-from movingfrf.studies.paper.outcome import UNJUDGED, DataTable, Outcome, Plot, Statement, verdict
-from movingfrf.studies.paper.road import SUBSTITUTE
-from movingfrf.studies.paper.study import NEWMARK_ELEMENT, TRUNCATION, Study, closed_form, relative, scenario, timed
+from movingfrf.studies.paper.drawing import STROKES, canvas, curve, legend_outside, logarithmic, title
+from movingfrf.studies.paper.outcome import AGREEMENT, DataTable, Outcome, Plot, Statement, Verdict, verdict
+from movingfrf.studies.paper.stated import STATED, SUBSTITUTES
+from movingfrf.studies.paper.study import Study, closed_form, relative, scenario, timed
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
-VEHICLE = (
-    "The vehicle's parameters stand in a table that the text of the paper does not have. Substitute: the half "
-    "truck of Mulcahy, and Law and Zhu (values as commonly quoted, not checked against the source)."
-)
-ROUGHNESS = (
-    "The profile is a figure of the paper. Substitute: a seeded realisation of class A of ISO 8608, 0.01 to 10 "
-    "cycles/m."
-)
-
-# Two curves that differ by less than this are one to the eye.
-ONE_CURVE = 1e-2
-
-# The times that the paper gives for its last table, on its authors' computer [s].
-STATED = {"cdfm": 1610.0, "sim": 686.0, "moving-frf": 5.9}
 
 # What the methods are called in the paper's last table.
 NAMES = {
@@ -64,8 +39,6 @@ NAMES = {
     "sim": "SIM",
 }
 
-ZOOM = (12.0, 12.5)
-
 
 def profile(study: Study) -> Outcome:
     """Show the class A profile and its spectrum against ISO 8608."""
@@ -76,13 +49,13 @@ def profile(study: Study) -> Outcome:
     fit = fit_iso(n, density)
 
     figure, (above, below) = canvas(1, 2, 2.6, width_ratios=(3, 2))
-    curve(above, distance, 1e3 * elevation, BLUE)
+    curve(above, distance, 1e3 * elevation, STROKES.blue)
     above.set(xlabel="distance [m]", ylabel="elevation [mm]", xlim=(distance[0], distance[-1]))
     inside = (n >= 0.01) & (n <= 10)
-    curve(below, n[inside], density[inside], BLUE, "this profile")
+    curve(below, n[inside], density[inside], STROKES.blue, "this profile")
     ends = np.array([0.01, 10.0])
     centre = IsoRoad.of_class("A").density(ends)
-    below.plot(ends, centre, **BLACK._asdict(), label="class A, centre")
+    below.plot(ends, centre, **STROKES.black._asdict(), label="class A, centre")
     below.plot(ends, 2 * centre, color=INK, linestyle=":", label="class A, limit")
     below.set(xscale="log", yscale="log", xlabel="spatial frequency [cycle/m]", ylabel="$G_d$ [m³]")
     below.legend()
@@ -93,7 +66,7 @@ def profile(study: Study) -> Outcome:
                 "So is the substitute. Fitted with the waviness 2 of the standard: "
                 f"{number(1e6 * fit.roughness_at_two, 3)} × 10⁻⁶ m³ at 0.1 cycle/m, class {fit.road_class} "
                 "(centre 16, limit 32).",
-                UNJUDGED,
+                Verdict.UNJUDGED,
             )
         ],
         numbers={
@@ -101,7 +74,7 @@ def profile(study: Study) -> Outcome:
             "fitted_waviness": fit.waviness,
             "roughness_at_fitted_waviness_m3": fit.roughness,
         },
-        substitutes=[ROUGHNESS],
+        substitutes=[SUBSTITUTES.roughness],
         plots=[
             Plot(
                 "figure_13",
@@ -118,10 +91,12 @@ def spectra(study: Study) -> Outcome:
     result = study.by_moving_frf
     frequency = np.linspace(0.0, 100.0, 801)
     found = study.struck.moving_frf(study.offsets, study.speed, 2 * np.pi * frequency)
-    exact = closed_form(study.road, frequency, study.offsets, study.speed)
+    exact = closed_form(study.guideway, frequency, study.offsets, study.speed)
 
     figure, axes = canvas(2, 2, 4.6)
-    for n, (line, name) in enumerate(((BLACK, "under the load"), (BLUE, "ahead"), (SKY, "behind"))):
+    for n, (line, name) in enumerate(
+        ((STROKES.black, "under the load"), (STROKES.blue, "ahead"), (STROKES.sky, "behind"))
+    ):
         curve(axes[0], frequency, 1e9 * np.abs(found[:, n]), line._replace(linewidth=1.1), name)
     axes[0].set(xlabel="frequency [Hz]", ylabel="|moving FRF| [nm/N]", xlim=(0, 100), yscale="log", ylim=(0.1, 50))
     deflection = (result.deflection - result.static_deflection).values
@@ -141,12 +116,12 @@ def spectra(study: Study) -> Outcome:
                 'Fig. 14: "frequency spectrum of the moving FRFs" and of responses (nothing is stated of them).',
                 f"The largest amplitude ahead is {number(ahead, 2)}, behind {number(behind, 2)} of that under the "
                 "load.",
-                UNJUDGED,
+                Verdict.UNJUDGED,
             )
         ],
         numbers={"largest_ahead_over_under_load": ahead, "largest_behind_over_under_load": behind},
         computed=["Densities by Welch's method, one-sided: their squares integrate to the variance."],
-        substitutes=[SUBSTITUTE, VEHICLE, ROUGHNESS],
+        substitutes=[SUBSTITUTES.road, SUBSTITUTES.vehicle, SUBSTITUTES.roughness],
         plots=[
             Plot(
                 "figure_14",
@@ -160,7 +135,7 @@ def spectra(study: Study) -> Outcome:
 
 
 def _densities(ax: Axes, values: FloatArray, result: xr.Dataset, scale: float, name: str) -> None:
-    for column, (line, wheel) in enumerate(((BLUE, "front"), (ORANGE, "rear"))):
+    for column, (line, wheel) in enumerate(((STROKES.blue, "front"), (STROKES.orange, "rear"))):
         frequency, density = spectral_density(values[:, column], result.attrs["time_step"])
         drawn = frequency <= 100
         curve(ax, frequency[drawn], scale * np.sqrt(density[drawn]), line, wheel)
@@ -178,9 +153,9 @@ def deflections(study: Study) -> Outcome:
 
     figure, axes = canvas(2, 2, 3.6, width_ratios=(3, 2), sharey="row")
     for row, wheel in enumerate(("front", "rear")):
-        for ax, interval in zip(axes[2 * row : 2 * row + 2], ((0.0, 24.0), ZOOM), strict=True):
+        for ax, interval in zip(axes[2 * row : 2 * row + 2], ((0.0, 24.0), (12.0, 12.5)), strict=True):
             some = (time >= interval[0]) & (time <= interval[1])
-            for result, line, name in ((stepped, BLACK, "CDFM"), (found, ORANGE, "moving FRF")):
+            for result, line, name in ((stepped, STROKES.black, "CDFM"), (found, STROKES.orange, "moving FRF")):
                 curve(ax, time[some], 1e3 * result.deflection.values[some, row], line, name)
             ax.set(xlim=interval)
             title(ax, f"{wheel} contact")
@@ -196,7 +171,7 @@ def deflections(study: Study) -> Outcome:
                 f"They differ by {number(total['struck'], 2)} (relative L2, the worse contact), their dynamic "
                 f"parts by {number(dynamic['struck'], 2)}; in closed form by {number(total['exact'], 2)} and "
                 f"{number(dynamic['exact'], 2)}.",
-                verdict(total["struck"] < ONE_CURVE),
+                verdict(total["struck"] < AGREEMENT.one_curve),
                 "holds below 1 %",
             )
         ],
@@ -210,7 +185,7 @@ def deflections(study: Study) -> Outcome:
             "(average acceleration), 1 ms. The convective term v ∂w/∂x is included in the dashpots of the tyres. "
             "Both see the same spline of the road.",
         ],
-        substitutes=[SUBSTITUTE, VEHICLE, ROUGHNESS],
+        substitutes=[SUBSTITUTES.road, SUBSTITUTES.vehicle, SUBSTITUTES.roughness],
         plots=[
             Plot(
                 "figure_15",
@@ -244,7 +219,7 @@ def accelerations(study: Study) -> Outcome:
     }
     wheels = max(differences["moving FRF − CDFM"][2:] + differences["moving FRF − SIM"][2:])
 
-    full = study.driven(study.road, truncation=None).acceleration.values[:, 2:]
+    full = study.driven(study.guideway, truncation=None).acceleration.values[:, 2:]
     cut, coarse = (relative(result.acceleration.values[:, 2:], full) for result in (exact, stepped))
     from_struck = relative(found.acceleration.values[:, 2:], exact.acceleration.values[:, 2:])
 
@@ -252,7 +227,7 @@ def accelerations(study: Study) -> Outcome:
     for n, ax in enumerate(axes):
         frequency, density = spectral_density(found.acceleration.values[:, n], found.attrs["time_step"])
         drawn = frequency <= 100
-        curve(ax, frequency[drawn], np.sqrt(density[drawn]), BLUE)
+        curve(ax, frequency[drawn], np.sqrt(density[drawn]), STROKES.blue)
         unit = found.dof_unit.values[n]
         ax.set(xlabel="frequency [Hz]", ylabel=f"acceleration [{unit}/s²/√Hz]", xlim=(0, 100))
         logarithmic(ax)
@@ -260,12 +235,12 @@ def accelerations(study: Study) -> Outcome:
     histories, rows = canvas(2, 2, 3.6, width_ratios=(3, 2), sharey="row")
     time = found.time.values
     for row, n in enumerate((2, 3)):
-        for ax, interval in zip(rows[2 * row : 2 * row + 2], ((0.0, 24.0), (ZOOM[0], ZOOM[0] + 0.25)), strict=True):
+        for ax, interval in zip(rows[2 * row : 2 * row + 2], ((0.0, 24.0), (12.0, 12.25)), strict=True):
             some = (time >= interval[0]) & (time <= interval[1])
             for result, line, name in (
-                (stepped, BLACK, "CDFM"),
-                (apart, SKY, "SIM"),
-                (found, ORANGE, "moving FRF"),
+                (stepped, STROKES.black, "CDFM"),
+                (apart, STROKES.sky, "SIM"),
+                (found, STROKES.orange, "moving FRF"),
             ):
                 curve(ax, time[some], result.acceleration.values[some, n], line, name)
             ax.set(xlim=interval)
@@ -282,9 +257,9 @@ def accelerations(study: Study) -> Outcome:
                 f"Moving FRF and the other two differ by {number(wheels, 2)} at most (relative L2), CDFM and SIM "
                 f"by {number(max(differences['CDFM − SIM']), 1)}. Three things make up the difference: striking "
                 f"40 m changes the wheels by {number(from_struck, 2)}, truncating the moving FRF at "
-                f"{TRUNCATION:g} Hz by {number(cut, 2)}, and CDFM's step of 1 ms by {number(coarse, 2)}; the last "
-                "two against the closed form up to 500 Hz.",
-                verdict(wheels < ONE_CURVE),
+                f"{STATED.truncation:g} Hz by {number(cut, 2)}, and CDFM's step of 1 ms by {number(coarse, 2)}; "
+                "the last two against the closed form up to 500 Hz.",
+                verdict(wheels < AGREEMENT.one_curve),
                 "holds below 1 %",
             )
         ],
@@ -297,7 +272,7 @@ def accelerations(study: Study) -> Outcome:
             "closed_form_against_cdfm": max(differences["closed form − CDFM"][2:]),
         },
         computed=["Accelerations of bounce, pitch and both wheels, about steady travel."],
-        substitutes=[SUBSTITUTE, VEHICLE, ROUGHNESS],
+        substitutes=[SUBSTITUTES.road, SUBSTITUTES.vehicle, SUBSTITUTES.roughness],
         plots=[
             Plot(
                 "figure_16",
@@ -330,7 +305,7 @@ def times(study: Study) -> Outcome:
     by_name = {row.method: row for row in compared.rows}
     seconds = {name: row.setup_s + row.solve_s for name, row in by_name.items()}
     samples, speed = compared.scenario.journey.samples, compared.scenario.journey.speed
-    unknowns = round(2 * speed * scenario("truck").journey.duration / NEWMARK_ELEMENT)
+    unknowns = round(2 * speed * scenario("truck").journey.duration / STATED.newmark_element)
     dense = _dense_step(unknowns)
     numbers = {
         "cdfm_over_moving_frf": seconds["cdfm"] / seconds["moving-frf"],
@@ -362,7 +337,7 @@ def times(study: Study) -> Outcome:
                 '"The time spent on the main computational processes of the CDFM, the SIM, and the moving FRF '
                 'method is 1610 s, 686 s, and 5.9 s" (ratios 273 and 116).',
                 at_step + " Claim 2 judges them at equal error.",
-                UNJUDGED,
+                Verdict.UNJUDGED,
             )
         ],
         numbers=numbers,
@@ -373,13 +348,13 @@ def times(study: Study) -> Outcome:
             "answer is CDFM on a road that travels along, refined in mesh and step and extrapolated until it "
             f"moves by {number(numbers['converged_answer_moves'], 1)}.",
             "Where the paper's ratios may come from: with steps of 1 ms, 1610 s would be 67 ms a step. One dense "
-            f"system of {unknowns} unknowns, 240 m in elements of {NEWMARK_ELEMENT:g} m, takes "
+            f"system of {unknowns} unknowns, 240 m in elements of {STATED.newmark_element:g} m, takes "
             f"{number(1e3 * dense, 2)} ms here; solving it in every step would take "
             f"{number(dense * samples / seconds['moving-frf'], 2)} times as long as the moving FRF. Bands and a "
             "constant factorisation, which nothing forbids CDFM, take most of that away.",
             *(["Quick: one second of the journey, each run once."] if study.quick else []),
         ],
-        substitutes=[SUBSTITUTE, VEHICLE, ROUGHNESS],
+        substitutes=[SUBSTITUTES.road, SUBSTITUTES.vehicle, SUBSTITUTES.roughness],
         plots=[
             Plot(
                 "error_over_time",
@@ -396,7 +371,7 @@ def times(study: Study) -> Outcome:
 
 def _time_tables(study: Study) -> list[DataTable]:
     rows = {row.method: row for row in study.compared.rows}
-    stated = {"moving-frf-fe-plain": STATED["moving-frf"], "cdfm": STATED["cdfm"], "sim": STATED["sim"]}
+    stated = {"moving-frf-fe-plain": STATED.moving_frf_time, "cdfm": STATED.cdfm_time, "sim": STATED.sim_time}
     return [
         DataTable(
             "table_last",
@@ -419,7 +394,7 @@ def _time_tables(study: Study) -> list[DataTable]:
                         row.ratio,
                         row.peak_bytes / 2**20 if row.peak_bytes else math.nan,
                         stated.get(name, math.nan),
-                        stated.get(name, math.nan) / STATED["moving-frf"],
+                        stated.get(name, math.nan) / STATED.moving_frf_time,
                     ],
                 )
                 for name, row in rows.items()

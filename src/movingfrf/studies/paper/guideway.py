@@ -17,48 +17,30 @@ from movingfrf.response.line import SpectralGrid
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, LONGEST, PAPER, moving_impulse_response, struck_track
 from movingfrf.studies.comparison.convergence import quantities, relative_l2
-from movingfrf.studies.paper.drawing import BLACK, BLUE, ORANGE, SKY, canvas, curve, logarithmic, title
-from movingfrf.studies.paper.outcome import UNJUDGED, DataTable, Outcome, Plot, Statement, verdict
-from movingfrf.studies.paper.study import FALLING, TRUNCATION, Study, closed_form, quiet, scenario
+from movingfrf.studies.paper.drawing import STROKES, canvas, curve, logarithmic, title
+from movingfrf.studies.paper.outcome import AGREEMENT, DataTable, Outcome, Plot, Statement, Verdict, verdict
+from movingfrf.studies.paper.stated import STATED, SUBSTITUTES
+from movingfrf.studies.paper.study import Study, closed_form, quiet, scenario
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-SUBSTITUTE = (
-    "The road's parameters stand in a table that the text of the paper does not have. Substitute: a published "
-    "pavement beam (EI = 1.573 × 10⁷ N m², m = 711.9 kg/m, k = 8 × 10⁶ N/m², c = 3 × 10⁴ N s/m² per metre of "
-    "width; Ding, Chen and Yang, J. Sound Vib. 331, 2012, with a lower damping) times the 3 m that the paper "
-    "gives its three-dimensional road. Its √(k/m)/2π is 16.9 Hz."
-)
-
 # Frequencies at which errors of the moving FRF are looked at: every quarter hertz up to the paper's truncation.
-BAND: FloatArray = np.arange(0.0, TRUNCATION + 0.125, 0.25)
-
-# Highest frequency drawn [Hz], and the step of the closed form's impulse response [s].
-DRAWN, FINE_STEP = 100.0, 2.5e-4
-
-# Speeds [m/s] and offsets [m] of the maps.
-FASTEST, FARTHEST = 60.0, 12.0
-
-# Errors whose lines are drawn in the maps of claim 4.
-LEVELS = (0.01, 0.03, 0.1)
-
-# Errors: what suffices, and what is no longer small.
-SUFFICES, CONSIDERABLE = 1e-3, 1e-2
+BAND: FloatArray = np.arange(0.0, STATED.truncation + 0.125, 0.25)
 
 
 def moving_frf(study: Study) -> Outcome:
     """Compare 40 m of finite elements with the closed form: moving impulse response and moving FRF at 10 m/s."""
-    frequency = np.linspace(0.0, DRAWN, 801)
-    exact = closed_form(study.road, frequency, study.offsets, study.speed)
+    frequency = np.linspace(0.0, 100.0, 801)
+    exact = closed_form(study.guideway, frequency, study.offsets, study.speed)
     found, finely = (
         struck.moving_frf(study.offsets, study.speed, 2 * np.pi * frequency)
         for struck in (study.struck, study.struck_finely)
     )
-    inside = frequency <= TRUNCATION
+    inside = frequency <= STATED.truncation
     falls, falls_struck = (_falls_from(frequency, np.abs(values[:, 0])) for values in (exact, found))
-    left = float(np.interp(TRUNCATION, frequency, np.abs(exact[:, 0])) / np.abs(exact[:, 0]).max())
+    left = float(np.interp(STATED.truncation, frequency, np.abs(exact[:, 0])) / np.abs(exact[:, 0]).max())
     plain, fine = (
         [float(error) for error in np.abs(values - exact)[inside].max(axis=0) / np.abs(exact).max()]
         for values in (found, finely)
@@ -69,22 +51,22 @@ def moving_frf(study: Study) -> Outcome:
     return Outcome(
         statements=[
             Statement(
-                f'"In the range beyond {FALLING:g} Hz, the amplitude of frequency response is a strictly '
+                f'"In the range beyond {STATED.falling:g} Hz, the amplitude of frequency response is a strictly '
                 'decreasing function of the frequency" (of Fig. 5(b), from 40 m of finite elements).',
                 f"In closed form it falls strictly from {number(falls, 3)} Hz on. The 40 m of finite elements "
                 "follow it with ripples of end reflections, so that theirs does so only from "
                 f"{number(falls_struck, 3)} Hz on.",
-                verdict(max(falls, falls_struck) <= FALLING, falls <= FALLING),
+                verdict(max(falls, falls_struck) <= STATED.falling, falls <= STATED.falling),
                 "holds if both do from 17 Hz on; in part if the closed form does",
             ),
             Statement(
                 '"The time-domain moving IRF is first calculated via the road finite element (FE) model, and '
                 'then the Fourier transform is used to obtain the moving FRF"; (implied) this is accurate.',
-                f"Its largest difference from the closed form below {TRUNCATION:g} Hz is {number(plain[0], 2)} of "
-                f"the largest |G| under the load, {number(plain[1], 2)} ahead and {number(plain[2], 2)} behind; "
-                f"relative to |G| itself {number(100 * at[50], 2)} % at 50 Hz and {number(100 * at[70], 2)} % at "
-                "70 Hz. Claim 4 shows what that does to results.",
-                verdict(max(plain) < SUFFICES, max(plain) < CONSIDERABLE),
+                f"Its largest difference from the closed form below {STATED.truncation:g} Hz is "
+                f"{number(plain[0], 2)} of the largest |G| under the load, {number(plain[1], 2)} ahead and "
+                f"{number(plain[2], 2)} behind; relative to |G| itself {number(100 * at[50], 2)} % at 50 Hz and "
+                f"{number(100 * at[70], 2)} % at 70 Hz. Claim 4 shows what that does to results.",
+                verdict(max(plain) < AGREEMENT.suffices, max(plain) < AGREEMENT.considerable),
                 "holds below 10⁻³ of the largest |G|, in part below 10⁻²",
             ),
         ],
@@ -107,9 +89,9 @@ def moving_frf(study: Study) -> Outcome:
             "With the average of four roads of 40 m, pinned or guided at either end, elements of "
             f"{CANCELLING.element:g} m and steps of {1e3 * CANCELLING.time_step:g} ms, what the ends reflect "
             f"cancels and {number(fine[0], 2)} remains.",
-            f"At {TRUNCATION:g} Hz the amplitude is {number(100 * left, 2)} % of its largest value.",
+            f"At {STATED.truncation:g} Hz the amplitude is {number(100 * left, 2)} % of its largest value.",
         ],
-        substitutes=[SUBSTITUTE],
+        substitutes=[SUBSTITUTES.road],
         plots=[
             Plot(
                 "figure_05",
@@ -127,24 +109,29 @@ def _figure_05(
     study: Study, frequency: FloatArray, exact: ComplexArray, found: ComplexArray, finely: ComplexArray
 ) -> Figure:
     figure, (response, spectrum, sides, error) = canvas(2, 2, 4.8)
-    grid = SpectralGrid(samples=int(1.0 / FINE_STEP), time_step=FINE_STEP, settling=1.0)
-    impulse = grid.to_histories(study.road.moving_frf([0.0], study.speed, grid.omega())).values[:, 0]
+    highest = float(frequency[-1])
+    step = 2.5e-4  # of the closed form's impulse response [s]: fine enough for the eye
+    grid = SpectralGrid(samples=int(1.0 / step), time_step=step, settling=1.0)
+    impulse = grid.to_histories(study.guideway.moving_frf([0.0], study.speed, grid.omega())).values[:, 0]
     struck_time = np.arange(len(study.struck.samples)) * study.struck.time_step
-    curve(response, grid.time, 1e9 * impulse, BLACK, "closed form")
-    curve(response, struck_time, 1e9 * study.struck.samples[:, 0], ORANGE, "40 m of finite elements")
+    curve(response, grid.time, 1e9 * impulse, STROKES.black, "closed form")
+    curve(response, struck_time, 1e9 * study.struck.samples[:, 0], STROKES.orange, "40 m of finite elements")
     response.set(xlabel="time [s]", ylabel="moving impulse response [nm/(N s)]", xlim=(0, 0.5))
-    curve(spectrum, frequency, 1e9 * np.abs(exact[:, 0]), BLACK, "closed form")
-    curve(spectrum, frequency, 1e9 * np.abs(found[:, 0]), ORANGE, "40 m of finite elements")
-    for at in (FALLING, TRUNCATION):
+    curve(spectrum, frequency, 1e9 * np.abs(exact[:, 0]), STROKES.black, "closed form")
+    curve(spectrum, frequency, 1e9 * np.abs(found[:, 0]), STROKES.orange, "40 m of finite elements")
+    for at in (STATED.falling, STATED.truncation):
         spectrum.axvline(at, color=GREY, linewidth=0.8, linestyle=":")
-    for n, (line, name) in enumerate(((BLUE, "ahead"), (SKY, "behind")), start=1):
+    for n, (line, name) in enumerate(((STROKES.blue, "ahead"), (STROKES.sky, "behind")), start=1):
         curve(sides, frequency, 1e9 * np.abs(exact[:, n]), line._replace(linestyle="-"), f"{name}, closed form")
         curve(sides, frequency, 1e9 * np.abs(found[:, n]), line._replace(linestyle=(0, (2, 1.5))), f"{name}, 40 m")
     for ax in (spectrum, sides):
-        ax.set(xlabel="frequency [Hz]", ylabel="|moving FRF| [nm/N]", xlim=(0, DRAWN), ylim=(0, None))
-    for values, line, name in ((found, ORANGE, "as in the paper"), (finely, BLUE, "end reflections cancelled")):
+        ax.set(xlabel="frequency [Hz]", ylabel="|moving FRF| [nm/N]", xlim=(0, highest), ylim=(0, None))
+    for values, line, name in (
+        (found, STROKES.orange, "as in the paper"),
+        (finely, STROKES.blue, "end reflections cancelled"),
+    ):
         curve(error, frequency[1:], np.abs(values - exact)[1:, 0] / np.abs(exact).max(), line, name)
-    error.set(xlabel="frequency [Hz]", ylabel="difference over largest |G|", xlim=(0, DRAWN))
+    error.set(xlabel="frequency [Hz]", ylabel="difference over largest |G|", xlim=(0, highest))
     logarithmic(error)
     sides.set_ylim(0, 10)
     sides.legend(ncols=2, loc="upper right")
@@ -155,7 +142,7 @@ def _figure_05(
 
 def _falls_from(frequency: FloatArray, amplitude: FloatArray) -> float:
     """Frequency from which an amplitude falls strictly, up to the paper's truncation [Hz]."""
-    inside = frequency <= TRUNCATION
+    inside = frequency <= STATED.truncation
     rises = np.flatnonzero(np.diff(amplitude[inside]) >= 0)
     return float(frequency[rises[-1] + 1]) if rises.size else 0.0
 
@@ -163,15 +150,18 @@ def _falls_from(frequency: FloatArray, amplitude: FloatArray) -> float:
 def maps(study: Study) -> Outcome:
     """Amplitude of the moving FRF over frequency and speed, and over frequency and offset."""
     fine = 1 if study.quick else 3
-    frequency = np.linspace(0.0, TRUNCATION, 60 * fine + 1)
-    speeds, offsets = np.linspace(0.0, FASTEST, 20 * fine + 1), np.linspace(-FARTHEST, FARTHEST, 48 * fine + 1)
+    frequency = np.linspace(0.0, STATED.truncation, 60 * fine + 1)
+    speed, offset = 60.0, 12.0  # the largest ones [m/s, m]
+    speeds, offsets = np.linspace(0.0, speed, 20 * fine + 1), np.linspace(-offset, offset, 48 * fine + 1)
     over_speed = np.empty((speeds.size, frequency.size))
-    for n, speed in enumerate(speeds):
-        over_speed[n] = np.abs(closed_form(study.road, frequency, np.zeros(1), float(speed))[:, 0])
+    for n, one in enumerate(speeds):
+        over_speed[n] = np.abs(closed_form(study.guideway, frequency, np.zeros(1), float(one))[:, 0])
         study.told("moving FRF over speed", n + 1, speeds.size)
-    over_offset = np.abs(closed_form(study.road, frequency, offsets, study.speed)).T
+    over_offset = np.abs(closed_form(study.guideway, frequency, offsets, study.speed)).T
     with quiet():
-        struck = struck_track(study.road, speed=study.speed, offsets=offsets, plain=True, progress=study.progress)
+        struck = struck_track(
+            study.guideway, speed=study.speed, offsets=offsets, plain=True, progress=study.progress
+        )
     from_elements = np.abs(struck.moving_frf(offsets, study.speed, 2 * np.pi * frequency)).T
     difference = float(np.abs(from_elements - over_offset).max() / over_offset.max())
     peak = over_speed.max(axis=1)
@@ -181,10 +171,10 @@ def maps(study: Study) -> Outcome:
         statements=[
             Statement(
                 'Fig. 6: "the variation of the amplitude of the moving FRF" (nothing is stated of it).',
-                f"Under the load its largest value at {FASTEST:g} m/s is {number(float(peak[-1] / peak[0]), 3)} "
+                f"Under the load its largest value at {speed:g} m/s is {number(float(peak[-1] / peak[0]), 3)} "
                 f"times that at rest, at {number(float(frequency[fastest.argmax()]), 3)} instead of "
                 f"{number(float(frequency[over_speed[0].argmax()]), 3)} Hz.",
-                UNJUDGED,
+                Verdict.UNJUDGED,
             )
         ],
         numbers={
@@ -195,7 +185,7 @@ def maps(study: Study) -> Outcome:
             "Closed form. The same map over offsets from 40 m of finite elements, as in the paper, differs from "
             f"it by at most {number(difference, 2)} of the largest amplitude.",
         ],
-        substitutes=[SUBSTITUTE, f"The range of speeds and offsets: 0 to {FASTEST:g} m/s, ±{FARTHEST:g} m."],
+        substitutes=[SUBSTITUTES.road, f"The range of speeds and offsets: 0 to {speed:g} m/s, ±{offset:g} m."],
         plots=[
             Plot(
                 "figure_06",
@@ -246,14 +236,16 @@ def _levels(values: FloatArray) -> FloatArray:
     return levels
 
 
-def _damped(road: Track, factor: float) -> Track:
-    assert isinstance(road.foundation, Spring)
-    return replace(road, foundation=replace(road.foundation, damping=factor * road.foundation.damping))
+def _damped(guideway: Track, factor: float) -> Track:
+    foundation = guideway.foundation
+    assert isinstance(foundation, Spring)
+    return replace(guideway, foundation=replace(foundation, damping=factor * foundation.damping))
 
 
-def _stiffened(road: Track, factor: float) -> Track:
-    assert isinstance(road.foundation, Spring)
-    return replace(road, foundation=replace(road.foundation, stiffness=factor * road.foundation.stiffness))
+def _stiffened(guideway: Track, factor: float) -> Track:
+    foundation = guideway.foundation
+    assert isinstance(foundation, Spring)
+    return replace(guideway, foundation=replace(foundation, stiffness=factor * foundation.stiffness))
 
 
 def where_it_fails(study: Study) -> Outcome:
@@ -266,12 +258,12 @@ def where_it_fails(study: Study) -> Outcome:
     error = np.empty((len(kinds), factors.size, speeds.size))
     for m, kind in enumerate(kinds.values()):
         for n, factor in enumerate(factors):
-            error[m, n] = [_error_of(study, kind(study.road, float(factor)), float(speed)) for speed in speeds]
+            error[m, n] = [_error_of(study, kind(study.guideway, float(factor)), float(speed)) for speed in speeds]
             study.told("40 m over speed, damping and stiffness", m * factors.size + n + 1, error[:, :, 0].size)
     over_speed = error[0, factors == 1.0][0]
     here = float(over_speed[speeds == study.speed][0])
     weak, stiff = float(error[0, 0, speeds == study.speed][0]), float(error[1, -1, speeds == study.speed][0])
-    longer = _error_of(study, study.road, study.speed, length=4 * PAPER.length)
+    longer = _error_of(study, study.guideway, study.speed, length=4 * PAPER.length)
     narrow, full = results["truck_narrow"], results["truck"]
     return Outcome(
         statements=[
@@ -286,7 +278,7 @@ def where_it_fails(study: Study) -> Outcome:
                 f"four times as long). With a tenth of the damping that is {number(weak, 2)}, on a foundation ten "
                 f"times as stiff {number(stiff, 2)}; over speeds from {speeds[0]:g} to {speeds[-1]:g} m/s it "
                 f"stays between {number(float(over_speed.min()), 2)} and {number(float(over_speed.max()), 2)}.",
-                verdict(max(*full.values(), here) < SUFFICES, full["contact_force"] < SUFFICES),
+                verdict(max(*full.values(), here) < AGREEMENT.suffices, full["contact_force"] < AGREEMENT.suffices),
                 "holds if all errors are below 10⁻³, in part if that of the contact force is",
             )
         ],
@@ -301,15 +293,15 @@ def where_it_fails(study: Study) -> Outcome:
         },
         computed=[
             "Nothing is truncated in this comparison. The error of the moving FRF is its largest difference from "
-            f"the closed form below {TRUNCATION:g} Hz, over the largest |G|: the worst of a contact itself, one "
-            "wheelbase ahead and one behind.",
+            f"the closed form below {STATED.truncation:g} Hz, over the largest |G|: the worst of a contact itself, "
+            "one wheelbase ahead and one behind.",
             f"What fails are the ends: a road of {4 * PAPER.length:g} m, struck in the same way and recorded for "
             f"the same time, is off by {number(longer, 2)} (elements and step), 40 m by {number(here, 2)}. Waves "
             "come back from the ends the higher, the less the foundation damps them; a stiff foundation is "
             "damped less, relative to critical. Absorbing ends, a longer road, or the average of pinned and "
             "guided ends mend it.",
         ],
-        substitutes=[SUBSTITUTE, "The half truck and the roughness of items 7 to 10."],
+        substitutes=[SUBSTITUTES.road, "The half truck and the roughness of items 7 to 10."],
         plots=[
             Plot(
                 "claim_4",
@@ -353,11 +345,12 @@ def _figure_of_claim_4(study: Study, speeds: FloatArray, factors: FloatArray, er
 
     figure, axes = canvas(1, 2, 2.9)
     levels = np.geomspace(1e-3, 1.0, 13)
+    marked = (0.01, 0.03, 0.1)  # errors that have a line and a name
     for ax, values, name in zip(axes, error, ("damping", "stiffness"), strict=True):
         drawn = ax.contourf(
             speeds, factors, values, levels, cmap="cividis", norm=LogNorm(levels[0], levels[-1]), extend="both"
         )
-        lines = ax.contour(speeds, factors, values, LEVELS, colors="white", linewidths=1.0)
+        lines = ax.contour(speeds, factors, values, marked, colors="white", linewidths=1.0)
         ax.clabel(lines, fmt=lambda level: f"{100 * level:g} %", fontsize=7.5, colors="white")
         ax.plot(study.speed, 1.0, "o", color="white", markeredgecolor="black", markersize=5)
         ax.set(xscale="log", yscale="log", xlabel="speed [m/s]", ylabel=f"foundation {name}, times this road's")
@@ -374,25 +367,26 @@ def _figure_of_claim_4(study: Study, speeds: FloatArray, factors: FloatArray, er
 def _result_errors(study: Study, name: str) -> dict[str, float]:
     """Compare results with the struck road with those in closed form, nothing truncated."""
     found, wanted = (
-        quantities(study.driven(road, name, None), scenario(name)) for road in (study.struck, study.road)
+        quantities(study.driven(guideway, name, None), scenario(name))
+        for guideway in (study.struck, study.guideway)
     )
     return relative_l2(found, wanted)
 
 
-def _error_of(study: Study, road: Track, speed: float, length: float = PAPER.length) -> float:
+def _error_of(study: Study, guideway: Track, speed: float, length: float = PAPER.length) -> float:
     """Largest error of the paper's moving FRF below 70 Hz, over the largest |G|, from a road of some length."""
     half = 0.5 * length
     # As long as the farthest point stays on the paper's 40 m, whatever the length is.
     duration = (0.5 * PAPER.length - study.wheelbase) / speed
     with quiet():
         struck = moving_impulse_response(
-            finite_track(road, first=-half, last=half, element=PAPER.element, ends=PAPER.ends[0]),
+            finite_track(guideway, first=-half, last=half, element=PAPER.element, ends=PAPER.ends[0]),
             speed=speed,
             offsets=study.offsets,
             strike=0.0,
             duration=min(duration, LONGEST),
             time_step=PAPER.time_step,
         )
-    exact = closed_form(road, BAND, study.offsets, speed)
+    exact = closed_form(guideway, BAND, study.offsets, speed)
     found = struck.moving_frf(study.offsets, speed, 2 * np.pi * BAND)
     return float(np.abs(found - exact).max() / np.abs(exact).max())
