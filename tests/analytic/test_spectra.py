@@ -11,7 +11,6 @@ import pytest
 from scipy.integrate import quad
 
 import movingfrf as mf
-from movingfrf.roughness.spectra.rail import CHINESE_BREAKS, FRA_CORNER, FRYBA_CORNERS
 
 RAILS = Path(__file__).parents[3] / "shared" / "data" / "rail_roughness_long.csv"
 
@@ -39,7 +38,7 @@ def test_variance_is_the_integral_of_the_density(name):
     spectrum = SPECTRA[name]
     low, high = spectrum.band
     thirds = 10 ** (np.arange(4, 25) / 10 + 0.05)
-    breaks = [*CHINESE_BREAKS, *np.ravel(getattr(spectrum, "spatial_frequency", [])), *thirds]
+    breaks = [*mf.ChineseBallastlessTrack._BREAKS, *np.ravel(getattr(spectrum, "spatial_frequency", [])), *thirds]
     places = np.unique(np.clip([low, *np.geomspace(low, high, 9), *breaks, high], low, high))
     places = np.array([low, *places[1:][np.diff(np.log(places)) > 1e-9]])
     # Beyond a breakpoint the formula of the next piece holds: stay within each by one part in 1e13.
@@ -68,9 +67,9 @@ def test_fra_in_the_units_of_its_source():
 def test_the_two_forms_of_the_fra_share_a_corner_and_a_name_and_no_more():
     """The corner is 40e-3 cycle/ft in both; between, the one is more than ten times the other (PARAMETERS.md)."""
     corner = 0.04 / 0.3048
-    assert FRA_CORNER / (2 * np.pi) == pytest.approx(corner, rel=2e-4)
-    assert FRYBA_CORNERS[1] == pytest.approx(corner, rel=2e-3)
-    assert FRYBA_CORNERS[0] == pytest.approx(0.0071 / 0.3048, rel=1e-3)
+    assert mf.FraTrack._CORNER / (2 * np.pi) == pytest.approx(corner, rel=2e-4)
+    assert mf.FrybaTrack._CORNERS[1] == pytest.approx(corner, rel=2e-3)
+    assert mf.FrybaTrack._CORNERS[0] == pytest.approx(0.0071 / 0.3048, rel=1e-3)
     n = np.geomspace(0.05, 0.3, 20)
     for track_class in (1, 6):
         ratio = mf.FraTrack.of_class(track_class).density(n) / mf.FrybaTrack.of_class(track_class).density(n)

@@ -30,8 +30,8 @@ FAULTS = [
     Fault(
         "per radian",
         "roughness/spectra/rail.py",
-        "FRA_CORNER**2 / (2 * np.pi) ** 3",
-        "FRA_CORNER**2 / (2 * np.pi) ** 2",
+        "self._CORNER**2 / (2 * np.pi) ** 3",
+        "self._CORNER**2 / (2 * np.pi) ** 2",
     ),
     Fault(
         "German per radian",
@@ -40,13 +40,13 @@ FAULTS = [
         "return self.roughness * c**2",
     ),
     Fault("cubic centimetres", "roughness/spectra/rail.py", "3.9488e-4]) * 1e-6", "3.9488e-4]) * 1e-4"),
-    Fault("pieces without an end", "roughness/spectra/rail.py", "np.array([*CHINESE_BREAKS, np.inf])", "np.inf"),
+    Fault("pieces without an end", "roughness/spectra/rail.py", "np.array([*self._BREAKS, np.inf])", "np.inf"),
     Fault("partial fraction", "roughness/spectra/rail.py", "b**2 / 3 * (low", "b**2 * (low"),
     Fault(
         "level of an amplitude",
         "roughness/spectra/tabulated.py",
-        "REFERENCE**2 * 10 ** (np.asarray(self.level)[order] / 10)",
-        "REFERENCE**2 * 10 ** (np.asarray(self.level)[order] / 20)",
+        "REFERENCE_AMPLITUDE**2 * 10 ** (np.asarray(self.level)[order] / 10)",
+        "REFERENCE_AMPLITUDE**2 * 10 ** (np.asarray(self.level)[order] / 20)",
     ),
     Fault(
         "levels in the order given",
@@ -76,7 +76,7 @@ FAULTS = [
     Fault(
         "paths without an own part",
         "roughness/realisation.py",
-        "own = rest[:, :1] > SMALLEST_PIVOT",
+        "own = rest[:, :1] > smallest_pivot",
         "own = rest[:, :1] > 0.9",
     ),
     Fault(
@@ -156,7 +156,7 @@ FAULTS = [
     Fault("paths between sections", "roughness/files.py", "rights + share * (lefts - rights)", "rights"),
     Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
     Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
-    Fault("high pass of first order", "roughness/preparation.py", "butter(GENTLE, 1 /", "butter(1, 1 /"),
+    Fault("high pass of first order", "roughness/preparation.py", "butter(FILTER.gentle, 1 /", "butter(1, 1 /"),
     Fault(
         "resampled with aliases",
         "roughness/preparation.py",
@@ -176,10 +176,12 @@ FAULTS = [
         "fitted below the content", "roughness/fitting.py", "return end - _until_cliff", "return 0 * _until_cliff"
     ),
     Fault("long waves that bend cut off", "roughness/fitting.py", "beyond = max(slope, 0.0)", "beyond = 0.0"),
-    Fault("corner of a filter fitted", "roughness/fitting.py", "(below[:end] < KEPT)", "(below[:end] < np.inf)"),
-    Fault("any spectrum a power law", "roughness/fitting.py", "> LARGEST_MISFIT:", "> np.inf:"),
+    Fault(
+        "corner of a filter fitted", "roughness/fitting.py", "(below[:end] < FIT.kept)", "(below[:end] < np.inf)"
+    ),
+    Fault("any spectrum a power law", "roughness/fitting.py", "> FIT.largest_misfit:", "> np.inf:"),
     Fault("class from far away", "roughness/fitting.py", "if not near or", "if"),
-    Fault("no doubt about a class", "roughness/fitting.py", "< CLASS_WIDTH", "< np.inf"),
+    Fault("no doubt about a class", "roughness/fitting.py", "< to_the_next", "< np.inf"),
     Fault(
         "equal paths told apart",
         "roughness/profile.py",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.welch import FEWEST_SAMPLES, FLAT, LONGEST_STRETCH, SEGMENTS, welch
+from movingfrf._basics.welch import ESTIMATE, FLAT, welch
 from movingfrf.reports.axes import (
     SPECTRUM_STYLE,
     Interval,
@@ -324,8 +324,8 @@ def elevation_spectrum(result: xr.Dataset, contact: int) -> tuple[FloatArray, Fl
         Spectral density [m³].
     """
     elevation = result.roughness.values[:, contact]
-    if len(elevation) < FEWEST_SAMPLES or np.ptp(elevation) < FLAT:
+    if len(elevation) < ESTIMATE.fewest_samples or np.ptp(elevation) < FLAT:
         return np.empty(0), np.empty(0)
     step = result.attrs["speed"] * time_step_of(result)
-    segments = max(SEGMENTS, int(2 * step * len(elevation) / LONGEST_STRETCH))
+    segments = max(ESTIMATE.segments, int(2 * step * len(elevation) / ESTIMATE.longest_stretch))
     return welch(elevation, step, segments=segments)

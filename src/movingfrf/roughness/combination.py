@@ -10,9 +10,6 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf.roughness.profile import Profile
 
-# Stations nearer to each other than this share of the smallest step count as one.
-SAME_STATION = 1e-6
-
 
 def superposed(*profiles: Profile) -> Profile:
     """Add profiles up: a bump on a rough road, say, or a flat wheel on a rough rail.
@@ -154,7 +151,10 @@ def _shared_stations(profiles: Sequence[Profile]) -> FloatArray:
     if first >= last:
         reaches = "; ".join(f"{p.stations[0]:g} m to {p.stations[-1]:g} m" for p in profiles)
         raise ValueError(f"the profiles must share an interval, but they reach from {reaches}")
-    same = SAME_STATION * min(np.diff(profile.stations).min() for profile in profiles)
+    # Stations nearer to each other than this share of the smallest step count as one: at 500 km they are rounded to
+    # 1e-10 m, and steps are a millimetre at the least; the sum is off by about this share of its change over a step
+    # [1e-7 to 1e-4].
+    same = 1e-6 * min(np.diff(profile.stations).min() for profile in profiles)
     stations = np.unique(np.concatenate([profile.stations for profile in profiles]))
     stations = stations[(stations > first + same) & (stations < last - same)]
     apart = np.diff(stations, prepend=-np.inf) > same

@@ -9,10 +9,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.smooth import smooth_step, smooth_step_slope
-from movingfrf.roughness.profile import Profile
-
-# Relative slack in the comparison of two lengths that were computed in different ways.
-SLACK = 1e-9
+from movingfrf.roughness.profile import SLACK, Profile
 
 
 class Excitation(NamedTuple):

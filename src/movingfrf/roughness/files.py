@@ -12,19 +12,13 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ParameterError, checking, option, shown
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf
-from movingfrf.roughness.formats.base import Column, Format, Record
+from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
 from movingfrf.roughness.profile import Profile
 
 # All formats; text in columns last, since any text might be that.
 FORMATS = {
     form.name: form for form in (crg.FORMAT, erd.FORMAT, matlab.FORMAT, netcdf.FORMAT, gpx.FORMAT, text.FORMAT)
 }
-
-# Enough of a file to recognise it.
-HEAD = 4096
-
-# How far a path may lie outside a grid by the rounding of two decimal numbers [m].
-ROUNDING = 1e-9
 
 
 class ReadProfile(NamedTuple):
@@ -38,7 +32,7 @@ def read_profile(
     file: str | Path,
     *,
     format: str | None = None,
-    columns: Sequence[Column] | None = None,
+    columns: Sequence[ColumnKey] | None = None,
     across: Sequence[float] | None = None,
     crop_rims: bool = False,
     repair_gaps: float | None = None,
@@ -104,18 +98,18 @@ def read_profile(
             check.refuse("format", f"must be one of {', '.join(FORMATS)}, got {shown(format)}")
     try:
         form = _recognised(path, format)
-        record = form.read(path, columns)
+        raw = form.read(path, columns)
         if wanted is not None:
-            record = _on_paths(record, wanted)
+            raw = _on_paths(raw, wanted)
         if crop_rims:
-            record = _cropped_rims(record, sides=wanted is None and record.across is not None)
-        record = _completed(record, repair_gaps)
+            raw = _cropped_rims(raw, sides=wanted is None and raw.across is not None)
+        raw = _completed(raw, repair_gaps)
         profile = Profile(
-            record.stations,
-            record.elevations[:, 0] if record.same_across else record.elevations,
-            source=f"{path.name} ({record.source})" if record.source else path.name,
-            steps=record.steps,
-            across=None if record.across is None else tuple(record.across.tolist()),
+            raw.stations,
+            raw.elevations[:, 0] if raw.same_across else raw.elevations,
+            source=f"{path.name} ({raw.source})" if raw.source else path.name,
+            steps=raw.steps,
+            across=None if raw.across is None else tuple(raw.across.tolist()),
         )
     except ParameterError as error:
         raise ValueError(f"{path}: {error}") from None
@@ -123,7 +117,7 @@ def read_profile(
         raise ValueError(f"cannot read {path}: {error.strerror or error}") from None
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    return ReadProfile(profile, _sentence(path.name, profile, record))
+    return ReadProfile(profile, _sentence(path.name, profile, raw))
 
 
 def write_profile(
@@ -204,7 +198,7 @@ def _by_ending(path: Path) -> Format | None:
 def _recognised(path: Path, name: str | None) -> Format:
     """Format of a file: the one that was named, or that its first bytes show, or that its ending says."""
     with path.open("rb") as file:
-        head = file.read(HEAD)
+        head = file.read(4096)  # enough to recognise a file
     if name is not None:
         return FORMATS[name]
     ending = _by_ending(path)
@@ -215,37 +209,40 @@ def _recognised(path: Path, name: str | None) -> Format:
     return shown or text.FORMAT
 
 
-def _on_paths(record: Record, across: FloatArray) -> Record:
+def _on_paths(raw: RawProfile, across: FloatArray) -> RawProfile:
     """Interpolate a grid at lateral positions."""
-    if record.across is None:
+    if raw.across is None:
         raise ValueError(f"has no lateral positions, so {option('across')} cannot choose among its paths")
-    order = np.argsort(record.across)
-    grid = record.across[order]
-    if grid.size != record.elevations.shape[1] or not np.isfinite(grid).all() or (np.diff(grid) == 0).any():
+    order = np.argsort(raw.across)
+    grid = raw.across[order]
+    if grid.size != raw.elevations.shape[1] or not np.isfinite(grid).all() or (np.diff(grid) == 0).any():
         raise ValueError(
             f"must have one lateral position for each path, all different, for {option('across')} to choose from"
         )
-    outside = (across < grid[0] - ROUNDING) | (across > grid[-1] + ROUNDING)
+    # How far a path may lie outside the grid, and beside a long section, by the rounding of two decimal numbers
+    # [m]: rounding is some 1e-15 of metres, and nobody places a path to a micrometre [1e-14 to 1e-6].
+    rounding = 1e-9
+    outside = (across < grid[0] - rounding) | (across > grid[-1] + rounding)
     if outside.any():
         raise ValueError(
             f"reaches from {grid[0]:g} m (right) to {grid[-1]:g} m (left), but {option('across')} asks "
             f"for {across[outside][0]:g} m"
         )
     if grid.size == 1:
-        return record._replace(elevations=record.elevations[:, [0] * across.size], across=across, same_across=False)
+        return raw._replace(elevations=raw.elevations[:, [0] * across.size], across=across, same_across=False)
     right = np.clip(np.searchsorted(grid, across, side="right") - 1, 0, grid.size - 2)
     share = np.clip((across - grid[right]) / (grid[right + 1] - grid[right]), 0.0, 1.0)
     # On a long section its neighbour does not count, even where that has no elevation.
-    share = np.where(np.abs(share - np.round(share)) < ROUNDING, np.round(share), share)
-    rights, lefts = record.elevations[:, order[right]], record.elevations[:, order[right + 1]]
+    share = np.where(np.abs(share - np.round(share)) < rounding, np.round(share), share)
+    rights, lefts = raw.elevations[:, order[right]], raw.elevations[:, order[right + 1]]
     elevations = np.where(share == 0, rights, np.where(share == 1, lefts, rights + share * (lefts - rights)))
-    return record._replace(elevations=elevations, across=across, same_across=False)
+    return raw._replace(elevations=elevations, across=across, same_across=False)
 
 
-def _cropped_rims(record: Record, *, sides: bool) -> Record:
+def _cropped_rims(raw: RawProfile, *, sides: bool) -> RawProfile:
     """Leave out what has no elevation at the sides of a grid, if asked, and at its ends."""
-    missing = np.isnan(record.elevations)
-    steps = list(record.steps)
+    missing = np.isnan(raw.elevations)
+    steps = list(raw.steps)
     left, right = 0, missing.shape[1]
     if sides:
         full = np.flatnonzero(~missing.any(axis=0))
@@ -262,58 +259,58 @@ def _cropped_rims(record: Record, *, sides: bool) -> Record:
         steps.append(f"left out {left} long sections at the left rim and {missing.shape[1] - right} at the right")
     if (first, last) != (0, len(missing)):
         steps.append(f"left out {first} stations at the beginning and {len(missing) - last} at the end")
-    place = record.place
-    return record._replace(
-        stations=record.stations[first:last],
-        elevations=record.elevations[first:last, left:right],
-        across=None if record.across is None else record.across[left:right],
+    place = raw.place
+    return raw._replace(
+        stations=raw.stations[first:last],
+        elevations=raw.elevations[first:last, left:right],
+        across=None if raw.across is None else raw.across[left:right],
         steps=tuple(steps),
         place=lambda row: place(row + first),
     )
 
 
-def _completed(record: Record, repair_gaps: float | None) -> Record:
+def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
     """Fill gaps that may be filled, and refuse what is missing otherwise."""
-    bad = np.flatnonzero(~np.isfinite(record.stations))
+    bad = np.flatnonzero(~np.isfinite(raw.stations))
     if bad.size:
-        raise ValueError(f"{record.place(int(bad[0]))}: there is no station, got {record.stations[bad[0]]}")
-    falls = np.flatnonzero(np.diff(record.stations) <= 0)
+        raise ValueError(f"{raw.place(int(bad[0]))}: there is no station, got {raw.stations[bad[0]]}")
+    falls = np.flatnonzero(np.diff(raw.stations) <= 0)
     if falls.size:
         n = int(falls[0])
         raise ValueError(
-            f"{record.place(n + 1)}: distance must increase, got {record.stations[n]:g} m followed by "
-            f"{record.stations[n + 1]:g} m"
+            f"{raw.place(n + 1)}: distance must increase, got {raw.stations[n]:g} m followed by "
+            f"{raw.stations[n + 1]:g} m"
         )
-    infinite = np.argwhere(np.isinf(record.elevations))
+    infinite = np.argwhere(np.isinf(raw.elevations))
     if infinite.size:
-        raise ValueError(f"{record.place(int(infinite[0][0]))}: elevation must be finite, got inf")
-    gaps = [gap for path in range(record.elevations.shape[1]) for gap in _gaps(record, path)]
+        raise ValueError(f"{raw.place(int(infinite[0][0]))}: elevation must be finite, got inf")
+    gaps = [gap for path in range(raw.elevations.shape[1]) for gap in _gaps(raw, path)]
     if not gaps:
-        return record
+        return raw
     missing = sum(gap.missing for gap in gaps)
     first, longest = gaps[0], max(gaps, key=lambda gap: gap.length)
     if repair_gaps is None:
         raise ValueError(
-            f"{record.place(first.first)}: no elevation {_at(record, first)}; in all {missing} elevations are "
-            f"missing in {len(gaps)} gaps, the longest {_long(longest)} {_at(record, longest)}. "
+            f"{raw.place(first.first)}: no elevation {_at(raw, first)}; in all {missing} elevations are "
+            f"missing in {len(gaps)} gaps, the longest {_long(longest)} {_at(raw, longest)}. "
             f"{option('repair_gaps')} fills gaps up to a length, {option('crop_rims')} leaves out the rims of a "
             "grid"
         )
     if longest.length > repair_gaps:
         raise ValueError(
-            f"{record.place(longest.first)}: the gap {_at(record, longest)} is {_long(longest)}, and "
+            f"{raw.place(longest.first)}: the gap {_at(raw, longest)} is {_long(longest)}, and "
             f"{option('repair_gaps')} allows {repair_gaps:g} m"
         )
-    elevations = record.elevations.copy()
+    elevations = raw.elevations.copy()
     for path in {gap.path for gap in gaps}:
         column = elevations[:, path]
         there = ~np.isnan(column)
-        column[~there] = np.interp(record.stations[~there], record.stations[there], column[there])
+        column[~there] = np.interp(raw.stations[~there], raw.stations[there], column[there])
     done = (
         f"filled {missing} missing elevations in {len(gaps)} gaps by straight lines, the longest {_long(longest)} "
-        f"{_at(record, longest)}"
+        f"{_at(raw, longest)}"
     )
-    return record._replace(elevations=elevations, steps=(*record.steps, done))
+    return raw._replace(elevations=elevations, steps=(*raw.steps, done))
 
 
 class _Gap(NamedTuple):
@@ -325,12 +322,12 @@ class _Gap(NamedTuple):
     length: float  # between the elevations on either side [m]; inf at an end
 
 
-def _gaps(record: Record, path: int) -> list[_Gap]:
-    missing = np.isnan(record.elevations[:, path])
+def _gaps(raw: RawProfile, path: int) -> list[_Gap]:
+    missing = np.isnan(raw.elevations[:, path])
     if not missing.any():
         return []
     edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]])))
-    bounds = np.concatenate([[-np.inf], record.stations, [np.inf]])
+    bounds = np.concatenate([[-np.inf], raw.stations, [np.inf]])
     return [
         _Gap(path, int(first), int(end - first), float(bounds[end + 1] - bounds[first]))
         for first, end in zip(edges[::2], edges[1::2], strict=True)
@@ -341,20 +338,20 @@ def _long(gap: _Gap) -> str:
     return f"{gap.length:.4g} m long" if np.isfinite(gap.length) else "open, at an end of the profile"
 
 
-def _at(record: Record, gap: _Gap) -> str:
+def _at(raw: RawProfile, gap: _Gap) -> str:
     """Say where a gap begins, and on which path."""
-    station = f"at {record.stations[gap.first]:g} m"
-    if record.across is not None:
-        return f"{station}, {record.across[gap.path]:g} m across"
-    return station if record.elevations.shape[1] == 1 else f"{station} on path {gap.path}"
+    station = f"at {raw.stations[gap.first]:g} m"
+    if raw.across is not None:
+        return f"{station}, {raw.across[gap.path]:g} m across"
+    return station if raw.elevations.shape[1] == 1 else f"{station} on path {gap.path}"
 
 
-def _sentence(name: str, profile: Profile, record: Record) -> str:
+def _sentence(name: str, profile: Profile, raw: RawProfile) -> str:
     stations, elevation = profile.stations, profile.columns
     step = profile.even_step()
     steps = np.diff(stations)
     spacing = f"{step:.4g} m" if step is not None else f"{steps.min():.4g}–{steps.max():.4g} m"
     return (
         f"{name}: {stations.size} stations from {stations[0]:g} m to {stations[-1]:g} m every {spacing}, "
-        f"{profile.paths} path(s), elevation {elevation.min():g} to {elevation.max():g} m, {record.understood}"
+        f"{profile.paths} path(s), elevation {elevation.min():g} to {elevation.max():g} m, {raw.understood}"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -16,23 +17,30 @@ SMOOTHING_EDGES = np.concatenate(
     [2.0 ** np.array([-6.5, -5.5]), 2.0 ** (np.arange(-27, -9, 2) / 6), 2.0 ** (np.arange(-42, 37, 2) / 24)]
 )
 
-# Content ends where three bands in a row lie below a quarter of the line through those before: through a decade of
-# them, without the last half octave, in which a spline or a filter begins to fall. It ends with the last band above
-# two thirds of the line. A band of one line estimated from eight half-overlapping pieces scatters by a third.
-IN_A_ROW, CLIFF, KEPT = 3, float(np.log(4.0)), float(np.log(1.5))
-DECADE, SHOULDER = float(np.log(10.0)), float(np.log(2.0)) / 2
 
-# Bands that a line begins with.
-FEWEST_BANDS = 6
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fit:
+    """What tunes where a spectrum has content and is a power law; in brackets, between what each number is safe.
 
-# A fit takes at least so many octaves, and reaches to within one of 0.1 cycle/m.
-LEAST_OCTAVES, REACH = 2, 2.0
+    Content ends where several bands in a row lie far below the line through those before: through a decade of them,
+    without the last half octave, in which a spline or a filter begins to fall. It ends with the last band that lies
+    little below the line. A band of one line estimated from eight half-overlapping pieces scatters by a third.
+    Heights below the line, and what it leaves, are differences of the natural logarithm of the density.
+    """
 
-# Root mean square of what the line leaves of the logarithms, beyond which a spectrum is no power law.
-LARGEST_MISFIT = float(np.log(1.8))
+    in_a_row: int = 3  # bands [2 to 5]
+    cliff: float = float(np.log(4.0))  # below a quarter of the line [log 3.5 to log 8]
+    kept: float = float(np.log(1.5))  # above two thirds of the line [log 1.1 to log 1.6]
+    before: float = float(np.log(10.0))  # length of the line, in the logarithm of the frequency [log 5 to log 10]
+    shoulder: float = float(np.log(2.0)) / 2  # length left out before the end, likewise [0.25 to 0.4]
+    fewest_bands: int = 6  # bands that a line begins with [5 to 10]
+    least_octaves: int = 2  # that a fit takes [a convention]
+    reach: float = 2.0  # ratio, within which it reaches 0.1 cycle/m: an octave [a convention]
+    # Root mean square of what the line leaves, beyond which a spectrum is no power law.
+    largest_misfit: float = float(np.log(1.8))  # [log 1.7 to log 2.2]
 
-# From one class to the next, in the logarithm of the density.
-CLASS_WIDTH = float(np.log(CLASS_CENTRES["B"] / CLASS_CENTRES["A"]))
+
+FIT = Fit()
 
 
 class IsoFit(NamedTuple):
@@ -66,7 +74,8 @@ class IsoFit(NamedTuple):
     @property
     def doubt(self) -> str:
         """Why the class means little: the waviness is so far from 2 that the line passes another; or nothing."""
-        if self.reason or abs(np.log(self.roughness / self.roughness_at_two)) < CLASS_WIDTH:
+        to_the_next = np.log(CLASS_CENTRES["B"] / CLASS_CENTRES["A"])
+        if self.reason or abs(np.log(self.roughness / self.roughness_at_two)) < to_the_next:
             return ""
         return (
             f"the class is of little meaning: the waviness, {self.waviness:.2f}, is so far from the 2 of ISO 8608 "
@@ -117,7 +126,7 @@ def fit_iso(spatial_frequency: FloatArray, density: FloatArray) -> IsoFit:
     """
     band = np.digitize(spatial_frequency, SMOOTHING_EDGES)
     used = [b for b in range(1, SMOOTHING_EDGES.size) if (band == b).any() and density[band == b].mean() > 0]
-    if len(used) < FEWEST_BANDS:
+    if len(used) < FIT.fewest_bands:
         return _none(
             (np.nan, np.nan), "the profile is level, or too short for a spectrum between 0.011 and 2.83 cycle/m"
         )
@@ -127,13 +136,13 @@ def fit_iso(spatial_frequency: FloatArray, density: FloatArray) -> IsoFit:
     log_n, log_density = log_n[first:end], log_density[first:end]
     inside = np.isin(band, used[first:end])
     covered = (float(spatial_frequency[inside].min()), float(spatial_frequency[inside].max()))
-    near = covered[0] <= REACH * REFERENCE_FREQUENCY and covered[1] >= REFERENCE_FREQUENCY / REACH
-    if not near or covered[1] < 2**LEAST_OCTAVES * covered[0]:
-        need = f"{LEAST_OCTAVES} octaves that reach to within one of {REFERENCE_FREQUENCY} cycle/m"
+    near = covered[0] <= FIT.reach * REFERENCE_FREQUENCY and covered[1] >= REFERENCE_FREQUENCY / FIT.reach
+    if not near or covered[1] < 2**FIT.least_octaves * covered[0]:
+        need = f"{FIT.least_octaves} octaves that reach to within one of {REFERENCE_FREQUENCY} cycle/m"
         return _none(covered, f"a fit takes {need}, and there is content over {_in_words(covered)} alone")
     log_n -= np.log(REFERENCE_FREQUENCY)
     slope, level = np.polyfit(log_n, log_density, 1)
-    if np.sqrt(np.mean((log_density - level - slope * log_n) ** 2)) > LARGEST_MISFIT:
+    if np.sqrt(np.mean((log_density - level - slope * log_n) ** 2)) > FIT.largest_misfit:
         return _none(covered, f"over {_in_words(covered)} the spectrum is no power law")
     at_two = float(np.exp((log_density + 2 * log_n).mean()))
     return IsoFit(float(np.exp(level)), float(-slope), at_two, covered, "")
@@ -150,7 +159,7 @@ def _none(band: tuple[float, float], reason: str) -> IsoFit:
 def _content(log_n: FloatArray, log_density: FloatArray) -> tuple[int, int]:
     """Find the bands in which there is content: the first, and the one after the last."""
     # Bands that surely have content: the highest spectrum of the slope, which is level on a usual road.
-    sloping = np.convolve(log_density + 2 * log_n, np.ones(FEWEST_BANDS), "valid")
+    sloping = np.convolve(log_density + 2 * log_n, np.ones(FIT.fewest_bands), "valid")
     start = int(sloping.argmax())
     end = start + _until_cliff(log_n[start:], log_density[start:])
     return end - _until_cliff(-log_n[:end][::-1], log_density[:end][::-1]), end
@@ -158,13 +167,14 @@ def _content(log_n: FloatArray, log_density: FloatArray) -> tuple[int, int]:
 
 def _until_cliff(place: FloatArray, height: FloatArray) -> int:
     """Count the points before those that fall far below the line of the ones before them."""
-    for end in range(FEWEST_BANDS, place.size):
-        last = max(int(np.searchsorted(place, place[end - 1] - SHOULDER)), FEWEST_BANDS)
-        near = slice(min(int(np.searchsorted(place, place[last - 1] - DECADE)), last - FEWEST_BANDS), last)
+    fewest, in_a_row = FIT.fewest_bands, FIT.in_a_row
+    for end in range(fewest, place.size):
+        last = max(int(np.searchsorted(place, place[end - 1] - FIT.shoulder)), fewest)
+        near = slice(min(int(np.searchsorted(place, place[last - 1] - FIT.before)), last - fewest), last)
         slope, level = np.polyfit(place[near], height[near], 1)
         below = level + slope * place - height
         # Long waves end where the density falls towards them: many roads have less of them than the line has.
-        beyond = max(slope, 0.0) * (place[end : end + IN_A_ROW] - place[end - 1])
-        if (below[end : end + IN_A_ROW] - beyond > CLIFF).all():
-            return int(np.flatnonzero(below[:end] < KEPT)[-1]) + 1
+        beyond = max(slope, 0.0) * (place[end : end + in_a_row] - place[end - 1])
+        if (below[end : end + in_a_row] - beyond > FIT.cliff).all():
+            return int(np.flatnonzero(below[:end] < FIT.kept)[-1]) + 1
     return place.size

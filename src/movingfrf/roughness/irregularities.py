@@ -15,9 +15,6 @@ from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.smooth import smooth_step
 from movingfrf.roughness.profile import Profile
 
-# Bytes per sample that making a shape takes at its peak.
-BYTES_PER_SAMPLE = 64
-
 
 def harmonic(
     *, amplitude: float, wavelength: float, length: float, phase: float = 0.0, start: float = 0.0
@@ -505,7 +502,8 @@ def polygon(
 
 def _stations(start: float, length: float, step: float) -> FloatArray:
     count = max(int(np.ceil(length / step - 1e-9)) + 1, 4)
-    require_memory(BYTES_PER_SAMPLE * count, f"a profile of {length:g} m in steps of {step:g} m")
+    needed = 64 * count  # bytes that making a shape takes at its peak
+    require_memory(needed, f"a profile of {length:g} m in steps of {step:g} m")
     return start + step * np.arange(count)
 
 

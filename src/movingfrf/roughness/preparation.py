@@ -3,29 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import ParameterError, checking, shown
 from movingfrf._basics.smooth import smooth_step
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import SLACK, Profile
 
-# Bytes per station and path that a new profile takes at its peak.
-BYTES_PER_STATION = 64
 
-# Relative slack in the comparison of lengths that were computed in different ways.
-SLACK = 1e-9
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Filter:
+    """What tunes the filters, Butterworth's, which run both ways; in brackets, between what each number is safe.
 
-# Before samples are taken further apart, waves shorter than this many new steps are taken out; the steepness of
-# that filter, and of the one that takes out long waves, is the order of a Butterworth filter that runs both ways.
-SHORTEST_WAVE, SHARP, GENTLE = 2.5, 8, 2
+    The first three are documented: of a wave as long as the filter's a half is left, of one of another length what
+    the order says.
+    """
 
-# A high pass goes on past either end by so many of its wavelengths, the profile turned about its end.
-SETTLING = 2.0
+    # Before samples are taken further apart, waves shorter than this many new steps are taken out: more than 2.485,
+    # or 3 % are left of waves of two steps.
+    shortest_wave: float = 2.5
+    sharp: int = 8  # order of the filter that does so
+    gentle: int = 2  # order of the one that takes out long waves
+    settling: float = 2.0  # wavelengths that it goes on past either end, the profile turned about its end [1 to 8]
 
-MOST_DEGREE = 5
+
+FILTER = Filter()
 
 
 def selected(profile: Profile, *, paths: Sequence[int]) -> Profile:
@@ -201,9 +205,10 @@ def detrended(profile: Profile, *, degree: int = 1) -> Profile:
     >>> detrended(Profile(x, 3.0 + 0.1 * x)).elevation.max().round(12).item()
     0.0
     """
+    most = 5
     with checking() as check:
-        if check.whole("degree", degree) > MOST_DEGREE:
-            check.refuse("degree", f"must be at most {MOST_DEGREE}, got {degree}")
+        if check.whole("degree", degree) > most:
+            check.refuse("degree", f"must be at most {most}, got {degree}")
     stations = profile.stations
     # Legendre polynomials over −1 to 1: powers of a station of 500 km would lose every digit.
     along = 2 * (stations - stations[0]) / (stations[-1] - stations[0]) - 1
@@ -257,12 +262,11 @@ def high_passed(profile: Profile, *, wavelength: float) -> Profile:
                 f"must lie between four steps and the length of the profile, {4 * step:g} and {length:g} m, got "
                 f"{wavelength:g} m",
             )
-    past = min(len(profile.stations) - 1, int(np.ceil(SETTLING * wavelength / step)))
-    sections = butter(GENTLE, 1 / wavelength, "highpass", fs=1 / step, output="sos")
+    past = min(len(profile.stations) - 1, int(np.ceil(FILTER.settling * wavelength / step)))
+    sections = butter(FILTER.gentle, 1 / wavelength, "highpass", fs=1 / step, output="sos")
     kept = sosfiltfilt(sections, profile.columns, axis=0, padlen=past)
-    done = (
-        f"took out waves longer than {wavelength:g} m (Butterworth of order {GENTLE}, both ways, half left there)"
-    )
+    how = f"Butterworth of order {FILTER.gentle}, both ways, half left there"
+    done = f"took out waves longer than {wavelength:g} m ({how})"
     return _done(profile, done, elevation=_like(profile, kept))
 
 
@@ -306,8 +310,8 @@ def resampled(profile: Profile, *, step: float) -> Profile:
     done = f"resampled from {old:.4g} to {step:g} m"
     fine = profile
     if step > old * (1 + 1e-6):
-        fine = _without_short_waves(profile, old, SHORTEST_WAVE * step)
-        done += f" after taking out waves shorter than {SHORTEST_WAVE * step:g} m"
+        fine = _without_short_waves(profile, old, FILTER.shortest_wave * step)
+        done += f" after taking out waves shorter than {FILTER.shortest_wave * step:g} m"
     new = stations[0] + step * np.arange(count)
     elevation = np.stack([fine.along(path)(new) for path in range(fine.paths)], axis=1)
     return _done(profile, done, distance=new, elevation=_like(profile, elevation))
@@ -488,8 +492,8 @@ def _without_short_waves(profile: Profile, step: float, wavelength: float) -> Pr
         intervals = max(round((stations[-1] - stations[0]) / step), 4)
         stations = np.linspace(stations[0], stations[-1], intervals + 1)
         columns = np.stack([profile.along(path)(stations) for path in range(profile.paths)], axis=1)
-    past = min(len(stations) - 1, int(np.ceil(SETTLING * wavelength / step)))
-    sections = butter(SHARP, 1 / wavelength, "lowpass", fs=1 / step, output="sos")
+    past = min(len(stations) - 1, int(np.ceil(FILTER.settling * wavelength / step)))
+    sections = butter(FILTER.sharp, 1 / wavelength, "lowpass", fs=1 / step, output="sos")
     return Profile(stations, _like(profile, sosfiltfilt(sections, columns, axis=0, padlen=past)))
 
 
@@ -503,7 +507,8 @@ def _longer(length: float, own: float, step: float, paths: int) -> int:
 
 
 def _require_room(length: float, step: float, paths: int) -> None:
-    require_memory(BYTES_PER_STATION * length / step * paths, f"a profile of {length:g} m in steps of {step:g} m")
+    needed = 64 * length / step * paths  # bytes that a new profile takes at its peak
+    require_memory(needed, f"a profile of {length:g} m in steps of {step:g} m")
 
 
 def _extended(

@@ -15,6 +15,10 @@ from movingfrf._basics.checks import checking
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
+# Relative slack in the comparison of lengths that were computed in different ways: more than their rounding, and
+# less than a step, of which a profile that fits into the memory has a thousand million at the most [1e-12 to 1e-9].
+SLACK = 1e-9
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Profile:

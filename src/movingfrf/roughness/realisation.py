@@ -15,17 +15,6 @@ from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.spectra.coherence import Coherence, presumed
 from movingfrf.roughness.spectra.spectrum import Spectrum
 
-# Bytes per sample and path that a realisation takes at its peak.
-BYTES_PER_SAMPLE = 64
-
-# Below it a pivot of a coherence matrix is rounding: the path adds nothing to those before it. Of a coherence known
-# to 1e-15 a pivot p is known to 1e-15/p of itself, and so is what it passes on to later paths; the path loses √p of
-# its size. What is then left in its column is at most √p as well, if the matrix is one of coherences.
-SMALLEST_PIVOT, LARGEST_REST = 1e-10, 1e-4
-
-# Nearer to a Gaussian road than this the gamma distribution has no meaningful shape.
-LEAST_SPREAD = 1e-9
-
 # Draws lines of unit variance for a number of paths, shape (path, frequency), given the period in samples.
 Draw = Callable[[np.random.Generator, int, int], ComplexArray]
 
@@ -166,7 +155,8 @@ def realise_laplace(
     """
     with checking() as check:
         ask = _asked(check, spectrum, length, step, seed, start, across, coherence)
-        if check.finite("kurtosis", kurtosis, "1") / 3 - 1 < LEAST_SPREAD:
+        # Nearer to a Gaussian road the gamma distribution has no meaningful shape.
+        if check.finite("kurtosis", kurtosis, "1") / 3 - 1 < 1e-9:
             check.refuse("kurtosis", f"must be above 3, the kurtosis of a Gaussian road, got {kurtosis!r}")
         if check.positive("segment", segment, "m") < step:
             check.refuse("segment", f"must be at least one step of {step:g} m, got {segment:g} m")
@@ -241,10 +231,9 @@ def _realised(ask: _Asked, draw: Draw, source: str) -> Profile:
     count = int(np.ceil(length / step - 1e-9)) + 1
     period = max(count, int(np.ceil(2 / (spectrum.band[0] * step))), 8)
     paths = 1 if across is None else across.size
-    require_memory(
-        BYTES_PER_SAMPLE * period * (max(paths, len(seeds)) + paths**2 / 8),
-        f"a profile of {length:g} m in steps of {step:g} m",
-    )
+    # Bytes that a realisation takes at its peak.
+    needed = 64 * period * (max(paths, len(seeds)) + paths**2 / 8)
+    require_memory(needed, f"a profile of {length:g} m in steps of {step:g} m")
     period = scipy.fft.next_fast_len(period, real=True)
     edges = (np.arange(period // 2 + 2) - 0.5) / (period * step)
     variance = np.diff(spectrum.variance_below(np.maximum(edges, 0.0)))
@@ -276,12 +265,16 @@ def _factors(coherence: Coherence, frequency: FloatArray, across: FloatArray) ->
     Cholesky's, so that the first path is the first line drawn. Long waves are all but the same on all paths, and
     their matrices singular to rounding; a path that adds nothing to those before it gets no part of its own.
     """
+    # Below it a pivot is rounding. Of a coherence known to 1e-15 a pivot p is known to 1e-15/p of itself, and so is
+    # what it passes on to later paths; the path loses √p of its size. What is then left in its column is at most √p
+    # as well, if the matrix is one of coherences [1e-11 to 1e-8].
+    smallest_pivot, largest_rest = 1e-10, 1e-4
     matrix = coherence.between(frequency, across[:, None] - across)
     factor = np.zeros_like(matrix)
     for j in range(across.size):
         rest = matrix[:, j:, j] - np.einsum("fik,fk->fi", factor[:, j:, :j], factor[:, j, :j])
-        own = rest[:, :1] > SMALLEST_PIVOT
-        if np.abs(np.where(own, 0.0, rest)).max() > LARGEST_REST:
+        own = rest[:, :1] > smallest_pivot
+        if np.abs(np.where(own, 0.0, rest)).max() > largest_rest:
             raise ValueError(
                 f"coherence must be positive semidefinite over the paths at {', '.join(f'{y:g}' for y in across)} m"
             )

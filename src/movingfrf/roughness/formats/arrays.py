@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import option
-from movingfrf.roughness.formats.base import Column, Record, chosen, metres, scaled
+from movingfrf.roughness.formats.base import ColumnKey, RawProfile, chosen_columns, metres, scaled
 
-# What the package itself calls them.
-STATIONS, ELEVATIONS, ACROSS = "distance", "elevation", "across"
 
-FEWEST = 4
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArrayNames:
+    """What the package itself calls the arrays that it writes."""
+
+    stations: str = "distance"
+    elevations: str = "elevation"
+    across: str = "across"
+
+
+ARRAY_NAMES = ArrayNames()
 
 
 class Array(NamedTuple):
@@ -35,8 +43,8 @@ class Array(NamedTuple):
         return sum(side != 1 for side in self.shape) == 1
 
 
-def record(arrays: Mapping[str, Array], columns: Sequence[Column] | None, kind: str) -> Record:
-    """Make a record of the arrays in a file.
+def raw_profile(arrays: Mapping[str, Array], columns: Sequence[ColumnKey] | None, kind: str) -> RawProfile:
+    """Make a raw profile of the arrays in a file.
 
     Parameters
     ----------
@@ -49,7 +57,7 @@ def record(arrays: Mapping[str, Array], columns: Sequence[Column] | None, kind: 
 
     Returns
     -------
-    Record
+    RawProfile
         In metres.
 
     Raises
@@ -60,7 +68,7 @@ def record(arrays: Mapping[str, Array], columns: Sequence[Column] | None, kind: 
     names = list(arrays)
     there = "; ".join(f"{name!r} {' by '.join(map(str, a.shape))}" for name, a in list(arrays.items())[:12])
     if columns is not None:
-        picked = [names[n] for n in chosen(names, columns)]
+        picked = [names[n] for n in chosen_columns(names, columns)]
         if len(picked) < 2:
             raise ValueError(f"{option('columns')} must name the stations and at least one array of elevations")
     else:
@@ -75,8 +83,12 @@ def record(arrays: Mapping[str, Array], columns: Sequence[Column] | None, kind: 
     scales = [metres(arrays[name].unit or "m", repr(name)) for name in picked]
     stated = {arrays[name].unit or "metres, since no unit is given" for name in picked}
     elevations = np.concatenate([scaled(part, s) for part, s in zip(parts, scales[1:], strict=True)], axis=1)
-    across = arrays[ACROSS].load().ravel() if ACROSS in arrays and picked[1:] == [ELEVATIONS] else None
-    return Record(
+    across = (
+        arrays[ARRAY_NAMES.across].load().ravel()
+        if ARRAY_NAMES.across in arrays and picked[1:] == [ARRAY_NAMES.elevations]
+        else None
+    )
+    return RawProfile(
         scaled(stations, scales[0]),
         elevations,
         f"{kind} with stations {picked[0]!r} and elevations {', '.join(map(repr, picked[1:]))} in "
@@ -89,9 +101,9 @@ def record(arrays: Mapping[str, Array], columns: Sequence[Column] | None, kind: 
 
 def _recognised(arrays: Mapping[str, Array]) -> list[str]:
     """Names of stations and elevations where only one choice is possible; else none."""
-    if STATIONS in arrays and ELEVATIONS in arrays:
-        return [STATIONS, ELEVATIONS]
-    long = {name: array for name, array in arrays.items() if array.length >= FEWEST}
+    if ARRAY_NAMES.stations in arrays and ARRAY_NAMES.elevations in arrays:
+        return [ARRAY_NAMES.stations, ARRAY_NAMES.elevations]
+    long = {name: array for name, array in arrays.items() if array.length >= 4}  # stations that a profile takes
     increasing = [name for name, a in long.items() if a.is_vector and bool((np.diff(a.load().ravel()) > 0).all())]
     others = [name for name in long if name not in increasing]
     return [*increasing, *others] if len(increasing) == len(others) == 1 else []

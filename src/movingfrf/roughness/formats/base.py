@@ -1,4 +1,4 @@
-"""What every format has in common: the record it fills, units of length, and how much a file may claim."""
+"""What every format has in common: the raw profile it fills, units of length, and how much a file may claim."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from movingfrf._basics.checks import option
 from movingfrf.roughness.profile import Profile
 
 # A column of a file: its name, or its number counted from 0.
-Column = str | int
+ColumnKey = str | int
 
 # Metres in one unit of length.
 METRES = {
@@ -47,7 +47,7 @@ def _numbered(row: int) -> str:
     return f"station number {row}"
 
 
-class Record(NamedTuple):
+class RawProfile(NamedTuple):
     """What a file says, before anything is decided about it."""
 
     stations: FloatArray  # (distance,) [m]
@@ -66,7 +66,7 @@ class Format(NamedTuple):
     name: str
     endings: tuple[str, ...]
     recognises: Callable[[bytes], bool]  # from the first bytes of a file
-    read: Callable[[Path, Sequence[Column] | None], Record]
+    read: Callable[[Path, Sequence[ColumnKey] | None], RawProfile]
     write: Callable[[Profile, Path, str], None] | None = None
     encodings: tuple[str, ...] = ("",)  # how it can be written; the first is the default
 
@@ -112,7 +112,7 @@ def scaled(values: FloatArray, scale: float) -> FloatArray:
     return values if scale == 1.0 else values * scale
 
 
-def chosen(names: Sequence[str], columns: Sequence[Column]) -> list[int]:
+def chosen_columns(names: Sequence[str], columns: Sequence[ColumnKey]) -> list[int]:
     """Numbers of the columns that were asked for.
 
     Parameters
@@ -154,7 +154,7 @@ def listed(names: Sequence[str], most: int = 12) -> str:
     return shown if len(names) <= most else f"{shown} and {len(names) - most} more"
 
 
-def contents(path: Path) -> bytes:
+def bytes_of(path: Path) -> bytes:
     """Bytes of a file.
 
     Parameters

@@ -6,17 +6,17 @@ import io
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TextIO
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf.roughness.formats.base import (
-    Column,
+    ColumnKey,
     Format,
-    Record,
-    chosen,
-    contents,
+    RawProfile,
+    bytes_of,
+    chosen_columns,
     listed,
     metres,
     scaled,
@@ -27,17 +27,10 @@ from movingfrf.roughness.profile import Profile
 # What may stand between two numbers, tried in this order; None is any white space.
 SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", None: "spaces"}
 
+# Signs that begin a comment.
 COMMENTS = "#%"
 
-# Lines of names, units and first numbers that are looked at to tell how a file is laid out.
-LOOKED_AT = 4
-
-# Rows that are turned into text at a time.
-WRITTEN_AT_ONCE = 100_000
-
 NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
-# A field in which nothing was measured.
-MISSING = {"", "nan", "na", "n/a", "null"}
 
 
 class Layout(NamedTuple):
@@ -52,13 +45,13 @@ class Layout(NamedTuple):
     header: int  # number of lines of names and units
 
 
-def read(path: Path, columns: Sequence[Column] | None) -> Record:
+def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     """Read text in columns; the first is the station unless `columns` says otherwise."""
-    return table(contents(path), columns)
+    return table(bytes_of(path), columns)
 
 
-def table(data: bytes, columns: Sequence[Column] | None) -> Record:
-    """Make a record of text in columns.
+def table(data: bytes, columns: Sequence[ColumnKey] | None) -> RawProfile:
+    """Make a raw profile of text in columns.
 
     Parameters
     ----------
@@ -69,7 +62,7 @@ def table(data: bytes, columns: Sequence[Column] | None) -> Record:
 
     Returns
     -------
-    Record
+    RawProfile
         In metres.
 
     Raises
@@ -79,7 +72,7 @@ def table(data: bytes, columns: Sequence[Column] | None) -> Record:
     """
     data, encoding = _as_text(data)
     layout = _layout(data, encoding)
-    used = list(range(len(layout.names))) if columns is None else chosen(layout.names, columns)
+    used = list(range(len(layout.names))) if columns is None else chosen_columns(layout.names, columns)
     if len(used) < 2:
         raise ValueError("expected a station and at least one elevation in each line")
     try:
@@ -97,7 +90,7 @@ def table(data: bytes, columns: Sequence[Column] | None) -> Record:
     _require_whole_rows(data, encoding, layout, values)
     stations = scaled(values[:, used[0]], scales[0])
     elevations = np.stack([scaled(values[:, n], s) for n, s in zip(used[1:], scales[1:], strict=True)], axis=1)
-    return Record(stations, elevations, _words(layout, used), place=place, same_across=len(used) == 2)
+    return RawProfile(stations, elevations, _words(layout, used), place=place, same_across=len(used) == 2)
 
 
 def read_numbers(file: str | Path) -> FloatArray:
@@ -119,7 +112,7 @@ def read_numbers(file: str | Path) -> FloatArray:
         If it is no such file, or a field is empty; with the line.
     """
     try:
-        data, encoding = _as_text(contents(Path(file)))
+        data, encoding = _as_text(bytes_of(Path(file)))
         layout = _layout(data, encoding)
         values = numbers(data, encoding, layout)
         bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
@@ -182,10 +175,25 @@ def write(profile: Profile, path: Path, encoding: str = "") -> None:
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.writelines(f"# {' '.join(note.split())}\n" for note in notes)
         file.write(",".join(names) + "\n")
-        for first in range(0, len(elevation), WRITTEN_AT_ONCE):
-            rows = slice(first, first + WRITTEN_AT_ONCE)
-            block = np.column_stack([profile.stations[rows], elevation[rows]])
-            file.writelines(",".join(map(repr, row)) + "\n" for row in block.tolist())
+        write_rows(file, [profile.stations, elevation], ",")
+
+
+def write_rows(file: TextIO, arrays: Sequence[FloatArray], separator: str) -> None:
+    """Write the columns of arrays side by side, each number with all its digits.
+
+    Parameters
+    ----------
+    file : text file
+        Where to.
+    arrays : sequence of ndarray, shape (row,) or (row, column)
+        Numbers, all with the same number of rows.
+    separator : str
+        What stands between two numbers.
+    """
+    at_once = 100_000  # rows that are turned into text: as many as fit into memory beside the profile
+    for first in range(0, len(arrays[0]), at_once):
+        block = np.column_stack([array[first : first + at_once] for array in arrays])
+        file.writelines(separator.join(map(repr, row)) + "\n" for row in block.tolist())
 
 
 def _as_text(data: bytes) -> tuple[bytes, str]:
@@ -216,12 +224,13 @@ def _lines(data: bytes, encoding: str, comment: str = COMMENTS) -> Iterator[tupl
 
 
 def _layout(data: bytes, encoding: str) -> Layout:
+    most = 4  # lines of names, units and first numbers that tell how a file is laid out [a convention]
     looked_at: list[tuple[int, str]] = []
     for number, line in _lines(data, encoding):
         if separators := _separators(line):
             return _laid_out(data, encoding, looked_at, number, line, separators[0])
         looked_at.append((number, line))
-        if len(looked_at) == LOOKED_AT:
+        if len(looked_at) == most:
             break
     if not looked_at:
         raise ValueError("is empty: a profile needs at least four lines of station and elevation")
@@ -252,7 +261,8 @@ def _fields(line: str, separator: str | None) -> list[str]:
 
 
 def _is_number(field: str) -> bool:
-    return bool(NUMBER.fullmatch(field)) or field.lower() in MISSING
+    missing = ("", "nan", "na", "n/a", "null")  # where nothing was measured
+    return bool(NUMBER.fullmatch(field)) or field.lower() in missing
 
 
 def _laid_out(

@@ -5,31 +5,31 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.checks import option
-from movingfrf.roughness.formats.base import Column, Format, Record
+from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
 from movingfrf.roughness.profile import Profile
 
-# How numbers are written: the name here, that of the standard, and the digits it keeps.
-ENCODINGS = {"double": "KDBI", "float": "KRBI", "long text": "LDFI", "short text": "LRFI"}
-SAID = {
-    "KDBI": "binary double precision",
-    "KRBI": "binary single precision",
-    "LDFI": "text, double precision",
-    "LRFI": "text, single precision",
+
+class Encoding(NamedTuple):
+    """How numbers are written."""
+
+    code: str  # that of the standard
+    digits: str  # what it keeps, in words
+
+
+ENCODINGS = {
+    "double": Encoding("KDBI", "binary double precision"),
+    "float": Encoding("KRBI", "binary single precision"),
+    "long text": Encoding("LDFI", "text, double precision"),
+    "short text": Encoding("LRFI", "text, single precision"),
 }
 
-# Where the header of a grid with very many long sections ends at the latest.
-LONGEST_HEADER = 2**20
 
-# A road that is the same across is written as this strip [m]: a grid has two long sections at least.
-STRIP = 1.0
-
-
-def read(path: Path, columns: Sequence[Column] | None) -> Record:
+def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     """Read a grid of elevations; its long sections become paths, from left to right."""
     if columns is not None:
         raise ValueError(
@@ -50,7 +50,7 @@ def read(path: Path, columns: Sequence[Column] | None) -> Record:
         raise ValueError(f"is damaged: {'; '.join(map(str, road.read_errors))}")
     if not all(np.isfinite(line).all() for line in (stations, across, road.x, road.y, road.zr)):
         raise ValueError("is damaged: its reference line or the positions of its long sections are not finite")
-    return Record(stations, elevations, _words(road, _encoding(path)), across=across)
+    return RawProfile(stations, elevations, _words(road, _encoding(path)), across=across)
 
 
 def write(profile: Profile, path: Path, encoding: str) -> None:
@@ -59,7 +59,8 @@ def write(profile: Profile, path: Path, encoding: str) -> None:
     step = profile.require_even("an OpenCRG file")
     across = np.array(profile.across if profile.across is not None else ())
     if profile.same_across:
-        elevation, across = np.repeat(profile.columns, 2, axis=1), np.array([STRIP, -STRIP])
+        # A grid has two long sections at least.
+        elevation, across = np.repeat(profile.columns, 2, axis=1), np.array([1.0, -1.0])
     elif across.size < 2:
         raise ValueError(
             "an OpenCRG file needs the lateral positions of two paths at least; give the profile `across`"
@@ -75,7 +76,7 @@ def write(profile: Profile, path: Path, encoding: str) -> None:
         u_start=float(profile.stations[0]),
         comments=[" ".join(note.split()).encode("ascii", "replace").decode() for note in notes],
     )
-    road.save(path, ENCODINGS[encoding])
+    road.save(path, ENCODINGS[encoding].code)
 
 
 def _library() -> Any:
@@ -88,8 +89,10 @@ def _library() -> Any:
 
 def _encoding(path: Path) -> str:
     with path.open("rb") as file:
-        found = re.search(rb"^#:\s*(\w{4})", file.read(LONGEST_HEADER), re.MULTILINE)
-    return SAID.get(found.group(1).decode("latin-1").upper(), "") if found else ""
+        # The header of a grid with very many long sections ends there at the latest.
+        found = re.search(rb"^#:\s*(\w{4})", file.read(2**20), re.MULTILINE)
+    code = found.group(1).decode("latin-1").upper() if found else ""
+    return next((encoding.digits for encoding in ENCODINGS.values() if encoding.code == code), "")
 
 
 def _words(road: Any, encoding: str) -> str:

@@ -3,19 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf.roughness.formats import columns as text
-from movingfrf.roughness.formats.base import Column, Format, Record, chosen, contents, listed, metres, scaled
+from movingfrf.roughness.formats.base import (
+    ColumnKey,
+    Format,
+    RawProfile,
+    bytes_of,
+    chosen_columns,
+    listed,
+    metres,
+    scaled,
+)
 from movingfrf.roughness.profile import Profile
 
-SIGNATURE = b"ERDFILEV"
 
-# Keyword and names are fields of eight characters; a line with & continues the names of the line before.
-FIELD = 8
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Header:
+    """What the lines above the numbers are like; a line with & continues the names of the line before."""
+
+    signature: str = "ERDFILEV"
+    field: int = 8  # characters of the keyword, and of each name
+    longest: int = 2**20  # bytes, and channels: a header is short, what is longer is none [a convention]
+
+
+HEADER = Header()
 
 # How numbers are stored, by the fifth number of the second line: binary, or None for text.
 STORED: dict[int, np.dtype[np.generic] | None] = {
@@ -26,22 +43,19 @@ STORED: dict[int, np.dtype[np.generic] | None] = {
 }
 ENCODINGS = {"text": 5, "float": 1, "double": 2}
 
-# A header is short; what is longer is none.
-LONGEST_HEADER = 2**20
 
-
-def read(path: Path, columns: Sequence[Column] | None) -> Record:
+def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     """Read an ERD file; binary numbers lie beside it, in a file of its name that ends in .bin."""
-    data = contents(path)
+    data = bytes_of(path)
     header, body, below = _split(data)
     count, samples, key, step = _storage(header)
-    words = {line[:FIELD].strip().upper(): line[FIELD:] for line in header[2:]}
+    words = {line[: HEADER.field].strip().upper(): line[HEADER.field :] for line in header[2:]}
     for keyword in ("GAIN", "OFFSET"):
         if any(word.startswith(keyword) for word in words):
             raise ValueError(f"scales its numbers by {keyword}, which is not understood")
     names = _fields(header, "SHORTNAM", count)
     units = _fields(header, "UNITSNAM", count)
-    used = list(range(count)) if columns is None else chosen(names, columns)
+    used = list(range(count)) if columns is None else chosen_columns(names, columns)
     scales = [metres(units[n] or "m", f"channel {names[n]!r}") for n in used]
     along = words.get("XUNITS", "").strip()
     scale = metres(along or "m", "XUNITS")
@@ -57,7 +71,7 @@ def read(path: Path, columns: Sequence[Column] | None) -> Record:
         f"ERD with {'text' if STORED[key] is None else f'binary numbers ({STORED[key]})'}, channels "
         f"{listed([names[n] for n in used])} in {', '.join(said)}, stations every {step:g} {along or 'm'}"
     )
-    return Record(
+    return RawProfile(
         (start + step * np.arange(len(values))) * scale,
         elevations,
         understood,
@@ -77,11 +91,11 @@ def write(profile: Profile, path: Path, encoding: str) -> None:
     record = -1 if stored is None else stored.itemsize * len(names)
     storage = f"{len(names)}, {len(elevation)}, -1, {record}, {key}, {step!r}, -1,"
     lines = [
-        "ERDFILEV2.00",
+        f"{HEADER.signature}2.00",
         storage,
         f"TITLE   {' '.join(profile.source.split())[:70]}",
-        "SHORTNAM" + "".join(f"{name:{FIELD}}" for name in names),
-        "UNITSNAM" + f"{'m':{FIELD}}" * len(names),
+        "SHORTNAM" + "".join(f"{name:{HEADER.field}}" for name in names),
+        "UNITSNAM" + f"{'m':{HEADER.field}}" * len(names),
         "XLABEL  Distance",
         "XUNITS  m",
         f"XSTART  {float(profile.stations[0])!r}",
@@ -91,9 +105,7 @@ def write(profile: Profile, path: Path, encoding: str) -> None:
     with path.open("w", encoding="latin-1", errors="replace", newline="\n") as file:
         file.writelines(f"{line.rstrip()}\n" for line in lines)
         if stored is None:
-            for first in range(0, len(elevation), text.WRITTEN_AT_ONCE):
-                block = elevation[first : first + text.WRITTEN_AT_ONCE].tolist()
-                file.writelines(" ".join(map(repr, row)) + "\n" for row in block)
+            text.write_rows(file, [elevation], " ")
     if stored is not None:
         elevation.astype(stored).tofile(f"{path}.bin")
 
@@ -102,12 +114,12 @@ def _split(data: bytes) -> tuple[list[str], bytes, int]:
     """Lines of the header, what follows it, and the number of the line where that begins."""
     lines: list[str] = []
     at = 0
-    while at < min(len(data), LONGEST_HEADER):
+    while at < min(len(data), HEADER.longest):
         end = data.find(b"\n", at)
         end = len(data) if end < 0 else end
         line = data[at:end].decode("latin-1").rstrip("\r")
         at = end + 1
-        if line[:FIELD].strip().upper() == "END":
+        if line[: HEADER.field].strip().upper() == "END":
             return lines, data[at:], len(lines) + 2
         lines.append(line)
     raise ValueError("has no line END that closes the header of an ERD file")
@@ -127,7 +139,7 @@ def _storage(header: Sequence[str]) -> tuple[int, int, int, float]:
     if key not in STORED:
         known = ", ".join(map(str, STORED))
         raise ValueError(f"line 2: numbers stored in the way {key} are not understood, only in the ways {known}")
-    if not 1 <= count <= LONGEST_HEADER:
+    if not 1 <= count <= HEADER.longest:
         raise ValueError(f"line 2: expected at least one channel, got {count}")
     return count, samples, key, _number(fields[5], "the step")
 
@@ -144,14 +156,14 @@ def _number(word: str, what: str) -> float:
 
 def _fields(header: Sequence[str], keyword: str, count: int) -> list[str]:
     """Texts of one keyword, one for each channel; empty where there are fewer."""
-    words = ""
+    words, width = "", HEADER.field
     current = False
     for line in header[2:]:
         if not line.startswith("&"):
-            current = line[:FIELD].strip().upper() == keyword
+            current = line[:width].strip().upper() == keyword
         if current:
-            words += line[FIELD:]
-    found = [words[at : at + FIELD].strip() for at in range(0, len(words), FIELD)][:count]
+            words += line[width:]
+    found = [words[at : at + width].strip() for at in range(0, len(words), width)][:count]
     if keyword == "SHORTNAM":
         return [found[n] if n < len(found) and found[n] else str(n) for n in range(count)]
     return found + [""] * (count - len(found))
@@ -184,7 +196,7 @@ def _binary(path: Path, count: int, stored: np.dtype[np.generic] | None) -> Floa
     beside = [file for file in (Path(f"{path}.bin"), path.with_suffix(".bin")) if file.exists()]
     if not beside:
         raise ValueError(f"needs its binary numbers in {path.name}.bin beside it, which is not there")
-    data = contents(beside[0])
+    data = bytes_of(beside[0])
     if len(data) % (stored.itemsize * count):
         raise ValueError(
             f"{beside[0].name} has {len(data)} bytes, which do not fit {count} channels of {stored.itemsize} bytes"
@@ -193,4 +205,8 @@ def _binary(path: Path, count: int, stored: np.dtype[np.generic] | None) -> Floa
         return np.frombuffer(data, stored).reshape(-1, count).astype(float)
 
 
-FORMAT = Format("erd", (".erd",), lambda head: head.startswith(SIGNATURE), read, write, tuple(ENCODINGS))
+def _recognises(head: bytes) -> bool:
+    return head.startswith(HEADER.signature.encode())
+
+
+FORMAT = Format("erd", (".erd",), _recognises, read, write, tuple(ENCODINGS))

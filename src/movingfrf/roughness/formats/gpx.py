@@ -10,13 +10,10 @@ from xml.parsers import expat
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf.roughness.formats.base import Column, Format, Record, contents
-
-# The ellipsoid of WGS 84: half its equatorial diameter [m] and its squared eccentricity.
-EQUATORIAL, ECCENTRICITY = 6_378_137.0, 6.694_379_990_141e-3
+from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
 
 
-class Track:
+class GpxTrack:
     """Collects the points of a track while the file goes by."""
 
     def __init__(self) -> None:
@@ -54,11 +51,11 @@ class Track:
             self.name = self._text.strip()[:100]
 
 
-def read(path: Path, columns: Sequence[Column] | None) -> Record:
+def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     """Read a track; points that do not lead on are left out, and it says so."""
     if columns is not None:
         raise ValueError("is a track: it has no columns to choose from")
-    track = _parsed(contents(path))
+    track = _parsed(bytes_of(path))
     if not track.height:
         raise ValueError("has no points: expected trkpt or rtept with lat, lon and ele")
     height = np.array(track.height)
@@ -68,7 +65,7 @@ def read(path: Path, columns: Sequence[Column] | None) -> Record:
     standing = int(np.sum(~onward))
     said = f"{standing} points that do not lead on left out"
     numbers = np.flatnonzero(onward)
-    return Record(
+    return RawProfile(
         stations,
         height[onward][:, None],
         f"GPX track {track.name!r} of {height.size} points, horizontal distance on the ellipsoid of WGS 84"
@@ -96,18 +93,20 @@ def distances(latitude: FloatArray, longitude: FloatArray) -> FloatArray:
     ndarray, shape (point - 1,)
         Distances [m].
     """
+    # The ellipsoid of WGS 84: half its equatorial diameter [m] and its squared eccentricity.
+    equatorial, eccentricity = 6_378_137.0, 6.694_379_990_141e-3
     phi, lam = np.radians(latitude), np.radians(longitude)
     middle = (phi[1:] + phi[:-1]) / 2
     # The short way round, across the date line too.
     turn = (np.diff(lam) + np.pi) % (2 * np.pi) - np.pi
-    curved = 1 - ECCENTRICITY * np.sin(middle) ** 2
-    northward = EQUATORIAL * (1 - ECCENTRICITY) / curved**1.5 * np.diff(phi)
-    eastward = EQUATORIAL / np.sqrt(curved) * np.cos(middle) * turn
+    curved = 1 - eccentricity * np.sin(middle) ** 2
+    northward = equatorial * (1 - eccentricity) / curved**1.5 * np.diff(phi)
+    eastward = equatorial / np.sqrt(curved) * np.cos(middle) * turn
     return np.hypot(northward, eastward)
 
 
-def _parsed(data: bytes) -> Track:
-    track = Track()
+def _parsed(data: bytes) -> GpxTrack:
+    track = GpxTrack()
     parser = expat.ParserCreate()
     parser.StartElementHandler = track.begin
     parser.EndElementHandler = track.end

@@ -12,6 +12,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -27,14 +28,21 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"
 # Where the superblock holds the addresses of the beginning and the end of the data, by its version.
 ADDRESSES = {0: (24, 40), 1: (28, 44), 2: (12, 28), 3: (12, 28)}
 
-# What may stand behind the end of the data [byte].
-TRAILING = 4096
 
-# How long the library may take [s], and how much it reads in a second at the least [byte].
-PATIENCE, PACE = 20.0, 5e6
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """What a file may cost before it counts as damaged: conventions, all three."""
+
+    trailing: int = 4096  # what may stand behind the end of the data [byte]
+    # What the library may take on any file [s]; its import takes one or two on a slow machine.
+    patience: float = 20.0
+    pace: float = 5e6  # what it reads in a second at the least [byte]
 
 
-class Contents(NamedTuple):
+LIMITS = Limits()
+
+
+class HdfContents(NamedTuple):
     """Arrays of real numbers at the top of a file, and its texts about the whole."""
 
     arrays: dict[str, Array]
@@ -42,7 +50,7 @@ class Contents(NamedTuple):
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[Contents]:
+def opened(path: Path) -> Iterator[HdfContents]:
     """Open a file for the time of the block.
 
     Parameters
@@ -52,7 +60,7 @@ def opened(path: Path) -> Iterator[Contents]:
 
     Yields
     ------
-    Contents
+    HdfContents
         Arrays, which can be loaded within the block, and attributes.
 
     Raises
@@ -67,7 +75,9 @@ def opened(path: Path) -> Iterator[Contents]:
         child = Path(__file__).with_name("hdf_child.py")
         command = [sys.executable, "-P", str(child), str(path.resolve()), name, str(most)]
         try:
-            done = subprocess.run(command, capture_output=True, timeout=PATIENCE + size / PACE, check=False)
+            done = subprocess.run(
+                command, capture_output=True, timeout=LIMITS.patience + size / LIMITS.pace, check=False
+            )
         except subprocess.TimeoutExpired:
             raise ValueError("is damaged: reading it comes to no end") from None
         index = folder / "index.json"
@@ -79,7 +89,7 @@ def opened(path: Path) -> Iterator[Contents]:
             item["name"]: Array(tuple(item["shape"]), partial(_load, folder / f"{n}.npy"), item["unit"])
             for n, item in enumerate(content["arrays"])
         }
-        yield Contents(arrays, content["attributes"])
+        yield HdfContents(arrays, content["attributes"])
 
 
 def _load(file: Path) -> FloatArray:
@@ -95,6 +105,6 @@ def _require_bounds(path: Path) -> int:
     places = ADDRESSES.get(block[8]) if len(block) > 8 else None
     base, end = [int.from_bytes(block[at : at + 8], "little") for at in places or (0, 0)]
     size = path.stat().st_size
-    if places is None or base > size or not max(size - TRAILING, 1) <= end <= size:
+    if places is None or base > size or not max(size - LIMITS.trailing, 1) <= end <= size:
         raise ValueError("is damaged, cut short, or no HDF5 file: it does not end where it says")
     return size

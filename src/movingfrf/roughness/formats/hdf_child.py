@@ -15,13 +15,8 @@ from typing import Any
 import h5py
 import numpy as np
 
-# Classes of MATLAB that are stored as numbers and are none.
-NO_NUMBERS = ("char", "logical", "cell", "struct", "function_handle")
-
 # What h5py raises where a file is damaged.
 DAMAGED = (OSError, RuntimeError, KeyError, TypeError, OverflowError, SystemError, AttributeError, ValueError)
-
-REFUSED = 3
 
 
 def text(value: Any) -> str:
@@ -31,7 +26,7 @@ def text(value: Any) -> str:
     return value if isinstance(value, str) else ""
 
 
-def number(item: h5py.Dataset, attribute: str, default: float) -> float:
+def number_attribute(item: h5py.Dataset, attribute: str, default: float) -> float:
     """Read an attribute by which netCDF packs numbers; HDF5 may hold it as an array of one."""
     value = np.asarray(item.attrs.get(attribute, default))
     return float(value.ravel()[0]) if value.size == 1 and value.dtype.kind in "iuf" else default
@@ -41,22 +36,23 @@ def values(item: h5py.Dataset) -> np.ndarray:
     """Read an array as netCDF means it: scaled, and nan where it is filled."""
     stored = np.asarray(item[()])
     found = stored.astype(float)
-    fill = number(item, "_FillValue", float("nan"))
+    fill = number_attribute(item, "_FillValue", float("nan"))
     if np.isfinite(fill):
         found[stored == fill] = np.nan
     with np.errstate(all="ignore"):  # whatever a damaged file says is looked at later
-        return found * number(item, "scale_factor", 1.0) + number(item, "add_offset", 0.0)
+        return found * number_attribute(item, "scale_factor", 1.0) + number_attribute(item, "add_offset", 0.0)
 
 
 def extract(file: Path, folder: Path, most: float) -> None:
     """Write arrays and index."""
+    no_numbers = ("char", "logical", "cell", "struct", "function_handle")
     listed: list[dict[str, Any]] = []
     with h5py.File(file, "r") as opened:
         for name, item in opened.items():
             if not isinstance(item, h5py.Dataset) or item.shape is None or item.dtype.kind not in "iuf":
                 continue
             # MATLAB stores text, cells and the like as numbers too, and says so.
-            if text(item.attrs.get("MATLAB_class", "")) in NO_NUMBERS:
+            if text(item.attrs.get("MATLAB_class", "")) in no_numbers:
                 continue
             needed = 8.0 * float(np.prod(item.shape, dtype=float))
             if needed > most:
@@ -76,4 +72,4 @@ if __name__ == "__main__":
         extract(Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]))
     except DAMAGED as error:
         print(error, file=sys.stderr)
-        sys.exit(REFUSED)
+        sys.exit(3)

@@ -9,19 +9,19 @@ import numpy as np
 
 from movingfrf._basics import matlab_file
 from movingfrf.roughness.formats import arrays, hdf
-from movingfrf.roughness.formats.base import Column, Format, Record, contents
+from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
 from movingfrf.roughness.profile import Profile
 
 
-def read(path: Path, columns: Sequence[Column] | None) -> Record:
+def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     """Read the arrays of either version."""
-    data = contents(path)
+    data = bytes_of(path)
     if hdf.SIGNATURE in (data[:8], data[512:520]):
         del data
         with hdf.opened(path) as content:
-            return arrays.record(content.arrays, columns, "MATLAB 7.3 file")
+            return arrays.raw_profile(content.arrays, columns, "MATLAB 7.3 file")
     numbers = matlab_file.arrays_and_texts(data).numbers
-    return arrays.record(
+    return arrays.raw_profile(
         {name: arrays.Array(stored.shape, stored.load) for name, stored in numbers.items()}, columns, "MATLAB file"
     )
 
@@ -30,9 +30,10 @@ def write(profile: Profile, path: Path, encoding: str = "") -> None:
     """Write distance, elevation, lateral positions, source and steps as version 5."""
     from scipy.io import savemat
 
-    values: dict[str, object] = {arrays.STATIONS: profile.stations[:, None], arrays.ELEVATIONS: profile.columns}
+    names = arrays.ARRAY_NAMES
+    values: dict[str, object] = {names.stations: profile.stations[:, None], names.elevations: profile.columns}
     if profile.across is not None:
-        values[arrays.ACROSS] = np.array(profile.across)[None, :]
+        values[names.across] = np.array(profile.across)[None, :]
     values |= {"source": profile.source, "steps": "\n".join(profile.steps)}
     savemat(path, values, appendmat=False, oned_as="column")
 

@@ -6,17 +6,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from movingfrf.roughness.formats import arrays, hdf
-from movingfrf.roughness.formats.base import Column, Format, Record
+from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
 from movingfrf.roughness.profile import Profile
 
 # Between the sentences of an attribute: netCDF turns a list of one into text.
 BETWEEN = "\n"
 
 
-def read(path: Path, columns: Sequence[Column] | None) -> Record:
+def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     """Read distance and elevation, and where they come from."""
     with hdf.opened(path) as content:
-        found = arrays.record(content.arrays, columns, "netCDF")
+        found = arrays.raw_profile(content.arrays, columns, "netCDF")
     source, steps = content.attributes["source"], content.attributes["steps"]
     return found._replace(source=source, steps=tuple(step for step in steps.split(BETWEEN) if step))
 

@@ -13,9 +13,6 @@ from movingfrf._basics.checks import checking
 from movingfrf.roughness.spectra.iso import IsoRoad
 from movingfrf.roughness.spectra.spectrum import LARGEST_WAVINESS, Spectrum
 
-# Below it the Bessel function of the largest waviness would overflow; γ differs from 1 by rounding alone there.
-SMALLEST_ARGUMENT = 1e-60
-
 
 class Coherence(Protocol):
     """What two parallel paths of a surface have in common, wave by wave.
@@ -100,7 +97,9 @@ class IsotropicCoherence:
         """
         order = self.waviness / 2
         z = 2 * np.pi * np.multiply.outer(spatial_frequency, np.abs(apart))
-        shown = np.maximum(z, SMALLEST_ARGUMENT)
+        # Below it the Bessel function of the largest waviness, K₅, would overflow. γ differs from 1 by some z^w
+        # there, and by z² ln z at the least: by rounding alone for roads, whose w is 1 and more [1e-60 to 1e-17].
+        shown = np.maximum(z, 1e-60)
         shared = 2 ** (1 - order) / gamma(order) * shown**order * kv(order, shown)
         return np.where(z > 0, np.minimum(shared, 1.0), 1.0)
 

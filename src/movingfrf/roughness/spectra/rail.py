@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,24 +18,6 @@ from movingfrf.roughness.spectra.spectrum import BandLimited, band_in_words, che
 
 # Wavelengths between which the FRA's forms hold: 5 and 1000 feet.
 FRA_BAND = (1 / 304.8, 1 / 1.524)
-# 40 · 10⁻³ cycles per foot, which one form rounds to 0.8245 rad/m and the other to 0.131 cycle/m.
-FRA_CORNER = 0.8245
-FRA_FACTOR = 0.25
-# Class of track → A_v [m² rad/m], published in cm² rad/m.
-FRA_ROUGHNESS = {1: 1.2107e-4, 2: 1.0181e-4, 3: 0.6816e-4, 4: 0.5376e-4, 5: 0.2095e-4, 6: 0.0339e-4}
-# Corners [cycle/m], and class of track → A [m].
-FRYBA_CORNERS = (0.0233, 0.131)
-FRYBA_ROUGHNESS = {1: 15.53e-8, 2: 8.85e-8, 3: 4.92e-8, 4: 2.75e-8, 5: 1.57e-8, 6: 0.98e-8}
-# Corners [rad/m], and level → A_v [m² rad/m].
-GERMAN_CORNERS = (0.0206, 0.8246)
-GERMAN_ROUGHNESS = {"low": 4.032e-7, "high": 10.80e-7}
-# Corner [cycle/m], and quality → A [m³].
-SNCF_CORNER = 0.0489
-SNCF_ROUGHNESS = {"good": 308e-6 * 0.509, "poor": 308e-6 * 1.790}
-# Breakpoints [cycle/m], and of each piece A/n^p the A [m² (cycle/m)^(p−1)], published in mm², and the exponent p.
-CHINESE_BREAKS = np.array([0.0187, 0.0474, 0.1533])
-CHINESE_SCALES = np.array([1.0544e-5, 3.5588e-3, 1.9784e-2, 3.9488e-4]) * 1e-6
-CHINESE_EXPONENTS = np.array([3.3891, 1.9271, 1.3643, 3.4516])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,6 +57,19 @@ class FraTrack(BandLimited):
     [8.533e-06]
     """
 
+    # 40 · 10⁻³ cycles per foot, which this form rounds to 0.8245 rad/m and Frýba's to 0.131 cycle/m.
+    _CORNER: ClassVar[float] = 0.8245
+    _FACTOR: ClassVar[float] = 0.25
+    # Class of track → A_v [m² rad/m], published in cm² rad/m.
+    _ROUGHNESS: ClassVar[Mapping[int, float]] = {
+        1: 1.2107e-4,
+        2: 1.0181e-4,
+        3: 0.6816e-4,
+        4: 0.5376e-4,
+        5: 0.2095e-4,
+        6: 0.0339e-4,
+    }
+
     roughness: float
     band: tuple[float, float] = FRA_BAND
 
@@ -107,15 +102,15 @@ class FraTrack(BandLimited):
         ValueError
             If there is no such class.
         """
-        return cls(roughness=_listed(track_class, FRA_ROUGHNESS, band), band=band)
+        return cls(roughness=_listed(track_class, cls._ROUGHNESS, band), band=band)
 
     @property
     def _corner(self) -> float:
-        return FRA_CORNER / (2 * np.pi)
+        return self._CORNER / (2 * np.pi)
 
     @property
     def _scale(self) -> float:
-        return FRA_FACTOR * self.roughness * FRA_CORNER**2 / (2 * np.pi) ** 3
+        return self._FACTOR * self.roughness * self._CORNER**2 / (2 * np.pi) ** 3
 
     def _formula(self, n: FloatArray) -> FloatArray:
         return self._scale / (n**2 * (n**2 + self._corner**2))
@@ -159,6 +154,17 @@ class FrybaTrack(BandLimited):
     [6.528e-07]
     """
 
+    # Corners [cycle/m], and class of track → A [m].
+    _CORNERS: ClassVar[tuple[float, float]] = (0.0233, 0.131)
+    _ROUGHNESS: ClassVar[Mapping[int, float]] = {
+        1: 15.53e-8,
+        2: 8.85e-8,
+        3: 4.92e-8,
+        4: 2.75e-8,
+        5: 1.57e-8,
+        6: 0.98e-8,
+    }
+
     roughness: float
     band: tuple[float, float] = FRA_BAND
 
@@ -191,14 +197,14 @@ class FrybaTrack(BandLimited):
         ValueError
             If there is no such class.
         """
-        return cls(roughness=_listed(track_class, FRYBA_ROUGHNESS, band), band=band)
+        return cls(roughness=_listed(track_class, cls._ROUGHNESS, band), band=band)
 
     def _formula(self, n: FloatArray) -> FloatArray:
-        b, c = FRYBA_CORNERS
+        b, c = self._CORNERS
         return self.roughness * c**2 * (n**2 + b**2) / (n**4 * (n**2 + c**2))
 
     def _integral(self, low: float, high: FloatArray) -> FloatArray:
-        b, c = FRYBA_CORNERS
+        b, c = self._CORNERS
         # Partial fractions: c² (n² + b²)/(n⁴ (n² + c²)) = (1 − b²/c²)(1/n² − 1/(n² + c²)) + b²/n⁴.
         simple = (1 - (b / c) ** 2) * (1 / low - 1 / high - _lorentzian(c, low, high))
         return self.roughness * (simple + b**2 / 3 * (low**-3 - high**-3))
@@ -239,6 +245,10 @@ class GermanTrack(BandLimited):
     [4.056e-06]
     """
 
+    # Corners [rad/m], and level → A_v [m² rad/m].
+    _CORNERS: ClassVar[tuple[float, float]] = (0.0206, 0.8246)
+    _ROUGHNESS: ClassVar[Mapping[str, float]] = {"low": 4.032e-7, "high": 10.80e-7}
+
     roughness: float
     band: tuple[float, float] = (1 / 150, 1 / 3)
 
@@ -271,11 +281,11 @@ class GermanTrack(BandLimited):
         ValueError
             If there is no such level.
         """
-        return cls(roughness=_listed(track_class, GERMAN_ROUGHNESS, band), band=band)
+        return cls(roughness=_listed(track_class, cls._ROUGHNESS, band), band=band)
 
     @property
     def _corners(self) -> tuple[float, float]:
-        return GERMAN_CORNERS[0] / (2 * np.pi), GERMAN_CORNERS[1] / (2 * np.pi)
+        return self._CORNERS[0] / (2 * np.pi), self._CORNERS[1] / (2 * np.pi)
 
     def _formula(self, n: FloatArray) -> FloatArray:
         r, c = self._corners
@@ -321,6 +331,10 @@ class SncfTrack(BandLimited):
     [5.553e-06]
     """
 
+    # Corner [cycle/m], and quality → A [m³].
+    _CORNER: ClassVar[float] = 0.0489
+    _ROUGHNESS: ClassVar[Mapping[str, float]] = {"good": 308e-6 * 0.509, "poor": 308e-6 * 1.790}
+
     roughness: float
     band: tuple[float, float] = (1 / 40, 1 / 2)
 
@@ -353,14 +367,14 @@ class SncfTrack(BandLimited):
         ValueError
             If there is no such quality.
         """
-        return cls(roughness=_listed(track_class, SNCF_ROUGHNESS, band), band=band)
+        return cls(roughness=_listed(track_class, cls._ROUGHNESS, band), band=band)
 
     def _formula(self, n: FloatArray) -> FloatArray:
-        return self.roughness / (1 + n / SNCF_CORNER) ** 3
+        return self.roughness / (1 + n / self._CORNER) ** 3
 
     def _integral(self, low: float, high: FloatArray) -> FloatArray:
-        scale = self.roughness * SNCF_CORNER / 2
-        return scale * ((1 + low / SNCF_CORNER) ** -2 - (1 + high / SNCF_CORNER) ** -2)
+        scale = self.roughness * self._CORNER / 2
+        return scale * ((1 + low / self._CORNER) ** -2 - (1 + high / self._CORNER) ** -2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -395,6 +409,12 @@ class ChineseBallastlessTrack(BandLimited):
     [4.577e-07]
     """
 
+    # Breakpoints [cycle/m], and of each piece A/n^p the A [m² (cycle/m)^(p−1)], published in mm², and the exponent
+    # p.
+    _BREAKS: ClassVar[FloatArray] = np.array([0.0187, 0.0474, 0.1533])
+    _SCALES: ClassVar[FloatArray] = np.array([1.0544e-5, 3.5588e-3, 1.9784e-2, 3.9488e-4]) * 1e-6
+    _EXPONENTS: ClassVar[FloatArray] = np.array([3.3891, 1.9271, 1.3643, 3.4516])
+
     band: tuple[float, float] = (1 / 200, 1 / 2)
 
     def __post_init__(self) -> None:
@@ -406,13 +426,13 @@ class ChineseBallastlessTrack(BandLimited):
         return f"Chinese ballastless track, {band_in_words(self.band)}"
 
     def _formula(self, n: FloatArray) -> FloatArray:
-        piece = np.searchsorted(CHINESE_BREAKS, n, side="right")
-        return CHINESE_SCALES[piece] * n ** -CHINESE_EXPONENTS[piece]
+        piece = np.searchsorted(self._BREAKS, n, side="right")
+        return self._SCALES[piece] * n ** -self._EXPONENTS[piece]
 
     def _integral(self, low: float, high: FloatArray) -> FloatArray:
-        pieces = np.array([0.0, *CHINESE_BREAKS]), np.array([*CHINESE_BREAKS, np.inf])
+        pieces = np.array([0.0, *self._BREAKS]), np.array([*self._BREAKS, np.inf])
         first, last = (np.clip(np.asarray(n)[..., None], *pieces) for n in (low, high))
-        return np.sum(power_integral(CHINESE_SCALES, CHINESE_EXPONENTS, first, last), axis=-1)
+        return np.sum(power_integral(self._SCALES, self._EXPONENTS, first, last), axis=-1)
 
 
 def _lorentzian(corner: float, low: float, high: FloatArray) -> FloatArray:

@@ -12,19 +12,10 @@ from movingfrf._basics.checks import checking
 from movingfrf.roughness.spectra.spectrum import BandLimited, Spectrum, band_in_words
 
 # Amplitude to which levels of roughness refer [m].
-REFERENCE = 1e-6
+REFERENCE_AMPLITUDE = 1e-6
 
-# A third of an octave in base ten, from its centre to either edge; nominal centres are off by up to 0.006 decades.
+# A third of an octave in base ten, from its centre to either edge.
 HALF_THIRD = 10**0.05
-OFF_CENTRE = 0.012
-
-# ISO 3095:2013, Figure 2: the highest level of a test track's rails [dB re 1 µm], wavelengths from 40 to 0.315 cm.
-ISO_3095_WAVELENGTHS = 10 ** (-np.arange(4, 26) / 10)
-ISO_3095_LEVELS = np.array(
-    "17.1 15.0 13.0 11.0 9.0 7.0 4.9 2.9 0.9 -1.1 -3.2 "
-    "-5.0 -5.6 -6.2 -6.8 -7.4 -8.0 -8.6 -9.2 -9.8 -10.4 -11.0".split(),
-    float,
-)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -135,7 +126,8 @@ class ThirdOctaveSpectrum(BandLimited):
             if not check.faults:
                 if centres.size < 2 or (centres <= 0).any():
                     check.refuse("wavelength", "must be at least two positive numbers [m]")
-                elif np.abs(np.abs(np.diff(np.log10(centres))) - 0.1).max() > OFF_CENTRE:
+                # Nominal centres are off by up to 0.006 decades each.
+                elif np.abs(np.abs(np.diff(np.log10(centres))) - 0.1).max() > 0.012:
                     check.refuse("wavelength", "must be a third of an octave apart, as 0.02, 0.016, 0.0125 m are")
                 elif np.unique(np.sign(np.diff(centres))).size > 1:
                     check.refuse("wavelength", "must go in one direction, to longer or to shorter waves [m]")
@@ -163,7 +155,7 @@ class ThirdOctaveSpectrum(BandLimited):
         centres = 1 / np.asarray(self.wavelength)[order]
         midway = np.sqrt(centres[:-1] * centres[1:])
         edges = np.array([centres[0] / HALF_THIRD, *midway, centres[-1] * HALF_THIRD])
-        return edges, REFERENCE**2 * 10 ** (np.asarray(self.level)[order] / 10)
+        return edges, REFERENCE_AMPLITUDE**2 * 10 ** (np.asarray(self.level)[order] / 10)
 
     def _formula(self, n: FloatArray) -> FloatArray:
         edges, mean_square = self._bands
@@ -193,7 +185,12 @@ def iso3095_limit() -> ThirdOctaveSpectrum:
     >>> third_octave_levels(iso3095_limit(), [0.1, 0.01]).round(6).tolist()
     [4.9, -8.0]
     """
-    return ThirdOctaveSpectrum(wavelength=ISO_3095_WAVELENGTHS, level=ISO_3095_LEVELS)
+    # Figure 2: levels [dB re 1 µm] at wavelengths from 40 to 0.315 cm.
+    wavelengths = 10 ** (-np.arange(4, 26) / 10)
+    levels = (
+        "17.1 15.0 13.0 11.0 9.0 7.0 4.9 2.9 0.9 -1.1 -3.2 -5.0 -5.6 -6.2 -6.8 -7.4 -8.0 -8.6 -9.2 -9.8 -10.4 -11.0"
+    )
+    return ThirdOctaveSpectrum(wavelength=wavelengths, level=np.array(levels.split(), float))
 
 
 def third_octave_levels(spectrum: Spectrum, wavelength: ArrayLike) -> FloatArray:
@@ -224,4 +221,4 @@ def third_octave_levels(spectrum: Spectrum, wavelength: ArrayLike) -> FloatArray
         1 / (HALF_THIRD * centres)
     )
     with np.errstate(divide="ignore"):
-        return 10 * np.log10(mean_square / REFERENCE**2)
+        return 10 * np.log10(mean_square / REFERENCE_AMPLITUDE**2)
