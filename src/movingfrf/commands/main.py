@@ -9,11 +9,24 @@ import sys
 from cyclopts import CycloptsError
 
 from movingfrf._basics.checks import SolveError
+from movingfrf.commands import profiles, scenarios, studies
 from movingfrf.commands.root import Status, app
 
-# Loaded for the commands that they hang on the app, in the order in which a message lists these.
-# isort: off
-from movingfrf.commands import scenarios, studies, profiles  # noqa: F401
+# In the order in which messages list them.
+COMMANDS = (
+    scenarios.new,
+    scenarios.check,
+    scenarios.vehicles,
+    scenarios.run,
+    scenarios.random,
+    scenarios.measure,
+    studies.compare,
+    studies.paper,
+    profiles.profile,
+    profiles.convert,
+)
+for _command in COMMANDS:
+    app.command(_command)
 
 
 def main(arguments: list[str] | None = None) -> int:

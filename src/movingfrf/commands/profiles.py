@@ -11,7 +11,6 @@ from cyclopts import Parameter
 
 from movingfrf._basics.checks import ParameterError
 from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
-from movingfrf.commands.root import app
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -117,7 +116,6 @@ class ProfileOptions:
 AS_THE_FILE_HAS_IT = ProfileOptions()
 
 
-@app.command
 def profile(
     file: Path,
     /,
@@ -169,7 +167,6 @@ def profile(
         console.print(f"wrote {place}", soft_wrap=True)
 
 
-@app.command
 def convert(
     file: Path,
     target: Path,

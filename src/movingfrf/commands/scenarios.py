@@ -20,10 +20,8 @@ from movingfrf.commands.console import (
     print_result,
     print_table,
 )
-from movingfrf.commands.root import app
 
 
-@app.command
 def new(file: Path | None = None, /, *, loads: bool = False, force: bool = False) -> None:
     """Write a commented scenario to start from: a half truck on a class A road, or prescribed loads.
 
@@ -48,7 +46,6 @@ def new(file: Path | None = None, /, *, loads: bool = False, force: bool = False
     plain_console().print(f"wrote {file}", soft_wrap=True)
 
 
-@app.command
 def check(file: Path, /) -> None:
     """Check a scenario and say what it describes, without solving it.
 
@@ -69,7 +66,6 @@ def check(file: Path, /) -> None:
     console.print(f"{file}: in order", soft_wrap=True)
 
 
-@app.command
 def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Parameter(alias="-o")] = None) -> None:
     """List the vehicles of the catalogue, or describe one: weight, contacts, natural frequencies, what vibrates.
 
@@ -116,7 +112,6 @@ def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Param
         console.print(f"wrote {output}", soft_wrap=True)
 
 
-@app.command
 def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] = None) -> None:
     """Solve a scenario; write result.nc, summary.json and report.html.
 
@@ -166,7 +161,6 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
         console.print(f"wrote {folder / name}", soft_wrap=True)
 
 
-@app.command
 def random(
     file: Path,
     /,
@@ -240,7 +234,6 @@ def random(
         console.print(f"wrote {folder / name}", soft_wrap=True)
 
 
-@app.command
 def measure(
     file: Path,
     /,

@@ -8,10 +8,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
-from movingfrf.commands.root import app
 
 
-@app.command
 def compare(
     file: Path,
     /,
@@ -69,7 +67,6 @@ def compare(
         console.print(f"wrote {folder / name}", soft_wrap=True)
 
 
-@app.command
 def paper(
     *,
     output: Annotated[Path, Parameter(alias="-o")] = Path("out/paper"),
