@@ -34,7 +34,12 @@ SELECTION = [
 ]
 
 # These first where the fault lies in files of profiles, what is done to them and what is said of them.
-PROFILES = ["tests/test_preparation.py", "tests/test_readers.py", "tests/test_profile_description.py"]
+PROFILES = [
+    "tests/test_preparation.py",
+    "tests/test_readers.py",
+    "tests/test_readers_binary.py",
+    "tests/test_profile_description.py",
+]
 
 # These first where the fault lies in what is shown: figures, tables, files.
 REPORTS = [
