@@ -86,13 +86,13 @@ def steps_of_the_coupled_method() -> None:
     vehicle = scenario.vehicle
     road = mf.finite_track(scenario.guideway, first=-30.0, last=270.0, element=0.5)
     march = March(
-        road=road,
+        guideway=road,
         scheme=SCHEMES["average_acceleration"],
         time_step=1e-3,
         speed=10.0,
         contacts=vehicle.positions,
         observers=np.empty(0),
-        law=tie_of(vehicle),
+        tie=tie_of(vehicle),
     )
     march.prepare()
     steps = 24_000

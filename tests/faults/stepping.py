@@ -1,11 +1,11 @@
-"""Finite roads and plates, schemes, loops plain and compiled, Duhamel's integral, struck roads."""
+"""Finite guideways and plates, schemes, loops plain and compiled, Duhamel's integral, struck guideways."""
 
 from __future__ import annotations
 
 from tests.faults.fault import Fault
 
 FAULTS = [
-    # Finite roads.
+    # Finite guideways.
     Fault("shape function", "stepping/finite_track.py", "[0, 1, -2, 1]", "[0, 1, -1, 0]"),
     Fault("slope of an element not scaled", "stepping/finite_track.py", "/ element**derivative", "/ 1.0"),
     Fault(
@@ -50,8 +50,8 @@ FAULTS = [
     Fault(
         "pinned end may twist",
         "stepping/finite_plate.py",
-        "HELD_BY_DEFLECTION = np.array([True, False, True, False])",
-        "HELD_BY_DEFLECTION = np.array([True, False, False, False])",
+        "by_deflection = np.array([True, False, True, False])",
+        "by_deflection = np.array([True, False, False, False])",
     ),
     Fault(
         "dashpots of the whole width at each place",
@@ -83,8 +83,8 @@ FAULTS = [
     Fault(
         "every wheel begins on the centre line",
         "stepping/marching.py",
-        "rows = road.rows(at, 0, self.contacts_across)",
-        "rows = road.rows(at, 0, 0.0)",
+        "rows = guideway.rows(at, 0, self.contacts_across)",
+        "rows = guideway.rows(at, 0, 0.0)",
     ),
     Fault(
         "road twice as wide",
@@ -92,7 +92,7 @@ FAULTS = [
         "np.abs(across).max() > 0.5 *",
         "np.abs(across).max() > 1 *",
     ),
-    Fault("guided end held", "stepping/finite_track.py", '"guided": (False, True)', '"guided": (True, True)'),
+    Fault("guided end held", "stepping/finite_track.py", '"guided": End(False, True)', '"guided": End(True, True)'),
     # Schemes and the plain loop.
     Fault("generalised α without its β", "stepping/schemes.py", "0.25 * (1 - alpha_m + alpha_f) ** 2", "0.25"),
     Fault(
@@ -104,20 +104,20 @@ FAULTS = [
     Fault(
         "damping missing in the effective matrix",
         "stepping/marching.py",
-        "gamma * dt * self.road.damping",
-        "0.0 * dt * self.road.damping",
+        "gamma * dt * self.guideway.damping",
+        "0.0 * dt * self.guideway.damping",
     ),
     Fault(
         "β twice in the effective matrix",
         "stepping/marching.py",
-        "beta * dt * dt * self.road.stiffness",
-        "2 * beta * dt * dt * self.road.stiffness",
+        "beta * dt * dt * self.guideway.stiffness",
+        "2 * beta * dt * dt * self.guideway.stiffness",
     ),
     Fault(
         "vehicle without (1 − α_f)",
         "stepping/marching.py",
-        "np.linalg.inv((1 - alpha_m) * law.mass + (1 - alpha_f) * moving)",
-        "np.linalg.inv((1 - alpha_m) * law.mass + moving)",
+        "np.linalg.inv((1 - alpha_m) * tie.mass + (1 - alpha_f) * moving)",
+        "np.linalg.inv((1 - alpha_m) * tie.mass + moving)",
     ),
     Fault(
         "plain: convective term with the wrong sign", "stepping/marching.py", "sinking += self", "sinking -= self"
@@ -127,14 +127,14 @@ FAULTS = [
     Fault(
         "plain: moved on by one unknown too many",
         "stepping/marching.py",
-        "gone = elements * self.road.column",
-        "gone = elements * self.road.column + 1",
+        "gone = elements * self.guideway.column",
+        "gone = elements * self.guideway.column + 1",
     ),
     Fault(
         "half an element late",
         "stepping/marching.py",
-        "/ self.road.spacing + SAME_PLACE",
-        "/ self.road.spacing + 0.5",
+        "/ self.guideway.spacing + ELEMENT_ROUNDING",
+        "/ self.guideway.spacing + 0.5",
     ),
     # The compiled loops.
     Fault(
@@ -233,9 +233,14 @@ FAULTS = [
         "np.linalg.solve(np.eye(len(held)) + held @ yields, missing)",
         "missing",
     ),
-    Fault("impulse as an acceleration", "stepping/impulse.py", "state.road[1] = march", "state.road[2] = march"),
+    Fault(
+        "impulse as an acceleration",
+        "stepping/impulse.py",
+        "state.guideway[1] = march",
+        "state.guideway[2] = march",
+    ),
     Fault("one road for all", "stepping/impulse.py", "np.mean(records, axis=0)", "records[0]"),
-    Fault("reflections unseen", "stepping/impulse.py", "share ** (2 * len(roads))", "0 * share"),
+    Fault("reflections unseen", "stepping/impulse.py", "share ** (2 * len(guideways))", "0 * share"),
     Fault(
         "wrong half of the first hat",
         "stepping/duhamel.py",

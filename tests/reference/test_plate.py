@@ -549,27 +549,27 @@ def test_forces_at_the_start_fit_any_state():
     """F = k (z − w + r) + c (ż − ẇ − v w′ + ṙ) below each wheel, and M ü + C u̇ + K u = Σ Nᵀ F on the road."""
     road, random = plate(half=8.0, element=0.5, across=2), np.random.default_rng(7)
     march = March(
-        road=road,
+        guideway=road,
         scheme=SCHEMES["average_acceleration"],
         time_step=1e-3,
         speed=30.0,
         contacts=CAR.positions + 0.7,
         contacts_across=CAR.across,
         observers=np.empty(0),
-        law=tie_of(CAR),
+        tie=tie_of(CAR),
     )
     state = march.at_rest()
-    state.road[:2], state.body[:2] = random.normal(size=(2, road.dofs)), random.normal(size=(2, 7))
+    state.guideway[:2], state.body[:2] = random.normal(size=(2, road.dofs)), random.normal(size=(2, 7))
     roughness, rate, load = random.normal(size=(3, 4))
     march.begun(state, roughness, rate, load)
     rows, slopes = (road.rows(CAR.positions + 0.7, order, CAR.across) for order in (0, 1))
     wheels, velocities = state.body[:2, 3:]
     springs, dashpots = np.array([(contact.stiffness, contact.damping) for contact in CAR.contacts]).T
-    force = springs * (wheels - rows @ state.road[0] + roughness)
-    force += dashpots * (velocities - rows @ state.road[1] - 30.0 * (slopes @ state.road[0]) + rate)
+    force = springs * (wheels - rows @ state.guideway[0] + roughness)
+    force += dashpots * (velocities - rows @ state.guideway[1] - 30.0 * (slopes @ state.guideway[0]) + rate)
     np.testing.assert_allclose(state.acting, force + load, rtol=1e-10)
-    balance = road.mass @ state.road[2] + road.damping @ state.road[1] + road.stiffness @ state.road[0]
-    assert np.abs(balance - rows.T @ state.acting).max() < 1e-9 * np.abs(road.stiffness @ state.road[0]).max()
+    balance = road.mass @ state.guideway[2] + road.damping @ state.guideway[1] + road.stiffness @ state.guideway[0]
+    assert np.abs(balance - rows.T @ state.acting).max() < 1e-9 * np.abs(road.stiffness @ state.guideway[0]).max()
 
 
 def test_points_of_the_centre_line_that_stand_still():

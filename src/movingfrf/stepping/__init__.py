@@ -1,1 +1,1 @@
-"""The slow, independent ways to the same answers: finite roads stepped in time, and Duhamel's integral."""
+"""The slow, independent ways to the same answers: finite guideways stepped in time, and Duhamel's integral."""

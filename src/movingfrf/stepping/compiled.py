@@ -1,10 +1,10 @@
 """The inner loops of time stepping, compiled by numba (the extra `fast`); `marching` has them in NumPy.
 
-A road of cubic beam elements on a foundation without mass has bands of half-width three. Its effective matrix is
-factorised once, from both ends towards the middle: two recurrences that do not wait for each other. What a contact
-needs to know before the road is solved, its own row of the inverse, is computed once as well; beyond a few metres
-its entries are zero to rounding. So a step costs one band product and one band solve, however many contacts there
-are.
+A guideway of cubic beam elements on a foundation without mass has bands of half-width three. Its effective matrix
+is factorised once, from both ends towards the middle: two recurrences that do not wait for each other. What a
+contact needs to know before the guideway is solved, its own row of the inverse, is computed once as well; beyond a
+few metres its entries are zero to rounding. So a step costs one band product and one band solve, however many
+contacts there are.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import numpy as np
 from numba import njit
 
 from movingfrf.stepping.exchange import HUGE, TINY
-from movingfrf.stepping.finite_guideway import SAME_PLACE
-from movingfrf.stepping.kernels import FAST, WIDTH, dot, eliminate, product, shape_functions, solve
+from movingfrf.stepping.finite_guideway import ELEMENT_ROUNDING
+from movingfrf.stepping.kernels import FAST, HALF_WIDTH, band_product, dot, eliminate, shape_functions, solve
 
 
 @njit(cache=True, fastmath=FAST)
@@ -48,7 +48,7 @@ def iterate(matrix, right, force, tolerance, most):
 def march(
     # Scheme: step, β, γ, α_m, α_f.
     scheme,
-    # Road: bands of mass, damping and stiffness (4, n), factors of the effective matrix, rows of its inverse.
+    # Guideway: bands of mass, damping and stiffness (4, n), factors of the effective matrix, rows of its inverse.
     mass,
     damping,
     stiffness,
@@ -82,8 +82,9 @@ def march(
     # Contact forces are iterated to this tolerance, or solved for if it is zero.
     tolerance,
     most,
-    # State: displacement, velocity, acceleration of road and vehicle; forces on the road, elements moved on.
-    road,
+    # State: displacement, velocity, acceleration of guideway and vehicle; forces on the guideway; elements moved on
+    # by.
+    guideway,
     body,
     acting,
     shifted,
@@ -99,13 +100,13 @@ def march(
 ):
     """March from `begin` to `end`; returns the step that did not converge (or −1), and the most iterations."""
     dt, beta, gamma, alpha_m, alpha_f = scheme[0], scheme[1], scheme[2], scheme[3], scheme[4]
-    n = road.shape[1]
+    n = guideway.shape[1]
     k = contacts.size
     m = body.shape[1]
     last = number.size // 2 - 2
     reach = inverse.shape[1]
     keep = 1.0 - alpha_f
-    u, v, a = road[0], road[1], road[2]
+    u, v, a = guideway[0], guideway[1], guideway[2]
     z, dz, ddz = body[0], body[1], body[2]
     at_u, at_v, right = np.empty(n), np.empty(n), np.empty(n)
     free_z, free_dz, push, free_ddz = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
@@ -144,15 +145,15 @@ def march(
     for step in range(begin + 1, end + 1):
         travelled = speed * dt * (origin + step)
         if travels:
-            elements = int(np.floor(travelled / mesh[1] + SAME_PLACE)) - shifted[0]
+            elements = int(np.floor(travelled / mesh[1] + ELEMENT_ROUNDING)) - shifted[0]
             if elements > 0:
                 shifted[0] += elements
                 gone = min(2 * elements, n)
                 for part in range(3):
                     for i in range(n - gone):
-                        road[part, i] = road[part, i + gone]
+                        guideway[part, i] = guideway[part, i + gone]
                     for i in range(n - gone, n):
-                        road[part, i] = 0.0
+                        guideway[part, i] = 0.0
                 for j in range(k):
                     for q in range(4):
                         before[j, q] -= gone
@@ -161,16 +162,16 @@ def march(
             shape_functions(
                 contacts[j] + travelled, mesh[0], mesh[1], last, number, places[j], values[j], slopes[j]
             )
-        # What the road would do without the contact forces of this step.
+        # What the guideway would do without the contact forces of this step.
         free_a_u, free_a_v = (0.5 - beta) * dt * dt, (1.0 - gamma) * dt
         for i in range(n):
             at_u[i] = u[i] + keep * (dt * v[i] + free_a_u * a[i])
             at_v[i] = v[i] + keep * free_a_v * a[i]
-        product(stiffness, damping, at_u, at_v, right)
+        band_product(stiffness, damping, at_u, at_v, right)
         if alpha_m != 0.0:
             for i in range(n):
                 right[i] -= alpha_m * mass[0, i] * a[i]
-            for d in range(1, WIDTH + 1):
+            for d in range(1, HALF_WIDTH + 1):
                 for i in range(n - d):
                     right[i] -= alpha_m * mass[d, i] * a[i + d]
                     right[i + d] -= alpha_m * mass[d, i] * a[i]

@@ -1,9 +1,9 @@
-"""A vehicle and a finite road, stepped in time: as one system (CDFM), or side by side (SIM)."""
+"""A vehicle and a finite guideway, stepped in time: as one system (CDFM), or side by side (SIM)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -24,7 +24,7 @@ from movingfrf.stepping.requirements import (
     require_across,
     require_apart,
     require_kinds,
-    require_on_road,
+    require_on_guideway,
     require_slopes,
     require_stable_scheme,
 )
@@ -37,25 +37,30 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# A smooth run before the record needs no more rounds than this to agree with the loads it brings about.
-MOST_ROUNDS = 5
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SteadyTravel:
+    """What tunes the smooth run before the record; in brackets, between what each number is safe."""
 
-# Contact forces that differ by no more than this share agree.
-AGREED = 1e-9
+    # The run needs no more rounds than this to agree with the loads it brings about.
+    rounds: int = 5  # [4 or more: three axles take four where the guideway gives way far]
+    # Relative change of the contact forces from one round to the next at which they agree.
+    agreed: float = 1e-9  # [1e-11 to 1e-7]
+    # Relative change of the steady deflection, from one element to the next, at which the run was too short.
+    unsettled: float = 1e-3  # [a convention: from here on a finding says so]
+    # A vehicle whose contacts move as a rigid body allows is not held by the guideway: stiffness, relative to the
+    # stiffest contact, that is rounding.
+    unheld: float = 1e-9  # [1e-12 to 1e-6]
 
-# Change of the steady deflection, from one element to the next, at which the run-in was too short.
-UNSETTLED = 1e-3
 
-# A vehicle whose contacts move as a rigid body allows is not held by the road: relative stiffness that is rounding.
-ROUNDING = 1e-9
+STEADY_TRAVEL = SteadyTravel()
 
 
 class Steady(NamedTuple):
-    """Steady travel on the smooth road."""
+    """Steady travel on the smooth guideway."""
 
     load: FloatArray  # (contact,) [N]
     deflection: FloatArray  # (contact,) [m]
-    motion: FloatArray  # (dof,) about the vehicle at rest on a rigid road
+    motion: FloatArray  # (dof,) about the vehicle at rest on a rigid guideway
     findings: list[find.Finding]
 
 
@@ -152,7 +157,7 @@ def cdfm(
     >>> dict(result.sizes)
     {'time': 500, 'contact': 1, 'dof': 2}
     """
-    return prepared(
+    return prepared_journey(
         Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend),
         (road, vehicle, profile),
         scheme=scheme,
@@ -248,7 +253,7 @@ def sim(
     with checking() as check:
         check.positive("tolerance", tolerance, "1")
         check.whole("iterations", iterations, least=1)
-    return prepared(
+    return prepared_journey(
         Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend),
         (road, vehicle, profile),
         scheme=scheme,
@@ -261,7 +266,7 @@ def sim(
     )()
 
 
-def prepared(
+def prepared_journey(
     journey: Journey,
     parts: tuple[FiniteGuideway, Vehicle, Profile],
     *,
@@ -291,35 +296,39 @@ def prepared(
     callable
         Steps through the journey and returns the result of `cdfm` or `sim`.
     """
-    road, vehicle, profile = parts
+    guideway, vehicle, profile = parts
     with checking() as check:
-        require_kinds(check, road=(road, FiniteGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile))
+        require_kinds(
+            check, road=(guideway, FiniteGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile)
+        )
     with checking() as check:
         check.not_negative("run_in", run_in, "s")
         row = scheme_named(check, scheme)
         places = check.array("observe", observe, "m", (None,))
-        if places.size and (superposed or road.travels):
+        if places.size and (superposed or guideway.travels):
             check.refuse("observe", "must be empty on a road that travels along and where the weight is superposed")
     with checking() as check:
-        if places.size and not road.interval[0] <= places.min() <= places.max() <= road.interval[1]:
+        if places.size and not guideway.interval[0] <= places.min() <= places.max() <= guideway.interval[1]:
             check.refuse(
                 "observe",
-                f"must lie on the road, {road.interval[0]:.6g} m to {road.interval[1]:.6g} m, got "
+                f"must lie on the road, {guideway.interval[0]:.6g} m to {guideway.interval[1]:.6g} m, got "
                 f"{places.tolist()} m",
             )
-        positions = journey.start * (not road.travels) + vehicle.positions
+        positions = journey.start * (not guideway.travels) + vehicle.positions
         before, after = -journey.speed * run_in, journey.speed * journey.time_step * journey.samples
-        # A road that travels along follows element by element.
-        require_on_road(check, road, positions, (0.0, road.spacing) if road.travels else (before, after))
-        require_across(check, road, vehicle.across)
-        require_apart(check, road, positions)
+        # A guideway that travels along follows element by element.
+        require_on_guideway(
+            check, guideway, positions, (0.0, guideway.spacing) if guideway.travels else (before, after)
+        )
+        require_across(check, guideway, vehicle.across)
+        require_apart(check, guideway, positions)
         if any(contact.damping for contact in vehicle.contacts):
-            require_slopes(check, road)
-        require_stable_scheme(check, road, row, journey.time_step, vehicle)
+            require_slopes(check, guideway)
+        require_stable_scheme(check, guideway, row, journey.time_step, vehicle)
     channels = 5 * len(vehicle.contacts) + 2 * len(vehicle.dof_names)
     require_memory(8.0 * channels * journey.samples, f"{journey.samples} steps of {journey.time_step:g} s")
     march = March(
-        road=road,
+        guideway=guideway,
         scheme=row,
         time_step=journey.time_step,
         speed=journey.speed,
@@ -327,7 +336,7 @@ def prepared(
         contacts_across=vehicle.across,
         observers=places,
         observers_travel=False,
-        law=tie_of(vehicle),
+        tie=tie_of(vehicle),
         iteration=iteration,
         compiled=compiled,
     )
@@ -342,10 +351,10 @@ def prepared(
     march.prepare()
 
     def step() -> xr.Dataset:
-        record = march.run(
+        trace = march.run(
             journey.samples - 1, state.copied(), roughness=roughness, rate=rate, loads=loads, progress=progress
         )
-        force, deflection, motion = record.force, record.deflection, record.motion
+        force, deflection, motion = trace.force, trace.deflection, trace.motion
         if superposed:
             deflection += steady.deflection
         else:
@@ -362,9 +371,9 @@ def prepared(
             "blend": float(journey.blend),
             "datum": excitation.datum,
             "scheme": repr(row),
-            "road_dofs": road.dofs,
-            "road_spacing": float(road.spacing),
-            "iterations": record.iterations,
+            "road_dofs": guideway.dofs,
+            "road_spacing": float(guideway.spacing),
+            "iterations": trace.iterations,
             "findings": find.announced(
                 [*steady.findings, *find.contact_lost(force + steady.load, journey.time_step)]
             ),
@@ -375,11 +384,11 @@ def prepared(
             "deflection": deflection,
             "static_deflection": steady.deflection,
             "motion": motion,
-            "acceleration": record.acceleration,
+            "acceleration": trace.acceleration,
             "roughness": excitation.roughness,
         }
         if places.size:
-            values |= {"place": places, "place_deflection": record.observed}
+            values |= {"place": places, "place_deflection": trace.observed}
         return labelled({**journey.coordinates(vehicle), **values}, COUPLED, attributes)
 
     return step
@@ -391,7 +400,7 @@ def seen_in_time(profile: Profile, vehicle: Vehicle, journey: Journey) -> Excita
     Parameters
     ----------
     profile : Profile
-        The road's surface.
+        Elevation of the surface.
     vehicle : Vehicle
         The vehicle.
     journey : Journey
@@ -443,14 +452,14 @@ def _averaged(
 
 
 def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress) -> tuple[Steady, State]:
-    """Let the weights alone travel along the smooth road, from rest, and see what they settle to.
+    """Let the weights alone travel along the smooth guideway, from rest, and see what they settle to.
 
     Parameters
     ----------
     march : March
-        The road, and where contacts start.
+        The guideway, and where contacts start.
     vehicle : Vehicle
-        The vehicle; where the sag of the road redistributes its weight the run is repeated with what it found.
+        The vehicle; where the sag of the guideway redistributes its weight the run is repeated with what it found.
     steps : int
         Steps of the run; 0: at rest.
     progress : callable
@@ -461,24 +470,24 @@ def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress
     Steady
         Contact forces and deflections, averaged over the passage of one element, and the vehicle's motion on them.
     State
-        Road and vehicle at the end of the run.
+        Guideway and vehicle at the end of the run.
     """
-    held = stiffness_at_rest(march.law)
-    held = np.where(np.abs(held) < ROUNDING * np.abs(march.law.springs).max(), 0.0, held)
+    held = stiffness_at_rest(march.tie)
+    held = np.where(np.abs(held) < STEADY_TRAVEL.unheld * np.abs(march.tie.springs).max(), 0.0, held)
     sags = _sags(march, -steps)
-    yields = march.road.rows(march.places(-steps), 0, march.contacts_across) @ sags
+    yields = march.guideway.rows(march.places(-steps), 0, march.contacts_across) @ sags
     load = np.linalg.solve(np.eye(len(held)) + held @ yields, vehicle.static_loads)
     deflection = yields @ load
-    alone = replace(march, law=no_vehicle(march.contacts.size), iteration=SOLVED, observers=np.empty(0))
+    alone = replace(march, tie=no_vehicle(march.contacts.size), iteration=SOLVED, observers=np.empty(0))
     nothing = np.zeros((steps + 1, march.contacts.size))
     findings: list[find.Finding] = []
-    for _ in range(MOST_ROUNDS if steps else 1):
+    for _ in range(STEADY_TRAVEL.rounds if steps else 1):
         state = alone.at_rest(-steps)
-        state.road[0] = sags @ load
+        state.guideway[0] = sags @ load
         state.acting[:] = load
         if not steps:
             break
-        record = alone.run(
+        trace = alone.run(
             steps,
             state,
             roughness=nothing,
@@ -489,39 +498,39 @@ def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress
             progress=progress,
         )
         passage = _passage(march, steps)
-        deflection = record.deflection[-passage:].mean(axis=0)
-        findings = _settling(record.deflection, passage, march.time_step)
+        deflection = trace.deflection[-passage:].mean(axis=0)
+        findings = _settling(trace.deflection, passage, march.time_step)
         missing = vehicle.static_loads - held @ deflection - load
-        if np.abs(missing).max() <= AGREED * np.abs(load).max():
+        if np.abs(missing).max() <= STEADY_TRAVEL.agreed * np.abs(load).max():
             break
-        # In travel the road yields nearly as it does at rest.
+        # In travel the guideway yields nearly as it does at rest.
         load = load + np.linalg.solve(np.eye(len(held)) + held @ yields, missing)
     else:
         raise SolveError(
             f"the vehicle's weight and the sag of the road under it do not come to agree in steady travel at "
             f"{march.speed:g} m/s"
         )
-    law = march.law
-    motion = np.linalg.solve(vehicle.held_stiffness, law.contact_map.T @ (law.springs * deflection))
+    tie = march.tie
+    motion = np.linalg.solve(vehicle.held_stiffness, tie.contact_map.T @ (tie.springs * deflection))
     state.body = np.zeros((3, motion.size))
     state.body[0] = motion
     return Steady(load, deflection, motion, findings), state
 
 
 def _sags(march: March, step: int) -> FloatArray:
-    """Displacement of the road at rest per force at each contact, shape (road dof, contact)."""
+    """Displacement of the guideway at rest per force at each contact, shape (guideway dof, contact)."""
     from scipy.sparse.linalg import splu
 
     try:
-        factor = splu(march.road.stiffness)
+        factor = splu(march.guideway.stiffness)
     except RuntimeError:
         raise SolveError("the road's stiffness matrix is singular: nothing holds the road up at rest") from None
-    return factor.solve(march.road.rows(march.places(step), 0, march.contacts_across).toarray().T)
+    return factor.solve(march.guideway.rows(march.places(step), 0, march.contacts_across).toarray().T)
 
 
 def _passage(march: March, most: int) -> int:
     """Count the steps in which an element passes: between its nodes a mesh gives way a little more or less."""
-    steps = march.road.spacing / (march.speed * march.time_step)
+    steps = march.guideway.spacing / (march.speed * march.time_step)
     return max(1, min(round(steps), most))
 
 
@@ -532,7 +541,7 @@ def _settling(deflection: FloatArray, passage: int, time_step: float) -> list[fi
     last, before = deflection[-passage:].mean(axis=0), deflection[-2 * passage : -passage].mean(axis=0)
     # What is left shrinks from passage to passage; from one to the next it changes by about as much as is left.
     change = float(np.abs(last - before).max() / np.abs(last).max())
-    if change <= UNSETTLED:
+    if change <= STEADY_TRAVEL.unsettled:
         return []
     return [
         find.Finding(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,11 +30,17 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Two steps whose ratio differs by less than this from a whole number fit each other.
-FITTING = 1e-6
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Convolution:
+    """What tunes the integral; in brackets, between what each number is safe."""
 
-# What a moving impulse response has faded to where the integral may end, relative to its largest value.
-FADED = 1e-9
+    # Two steps whose ratio differs by less than this from a whole number fit each other.
+    fitting: float = 1e-6  # [1e-10 to 1e-5]
+    # What a moving impulse response has faded to where the integral may end, relative to its largest value.
+    faded: float = 1e-9  # [1e-12 to 1e-7]
+
+
+CONVOLUTION = Convolution()
 
 
 def duhamel(
@@ -105,33 +112,33 @@ def duhamel(
     excitation = seen_in_time(profile, vehicle, journey)
     assert excitation.rate is not None
     yields = road.moving_frf(speed=speed, omega=[0.0], **vehicle.offsets)[0].real
-    law = tie_of(vehicle)
-    held = stiffness_at_rest(law)
+    tie = tie_of(vehicle)
+    held = stiffness_at_rest(tie)
     load = np.linalg.solve(np.eye(positions.size) + held @ yields, vehicle.static_loads)
     steady = yields @ load
     samples = journey.samples
     record = [
-        np.zeros((width, samples)) for width in (positions.size, positions.size, len(law.mass), len(law.mass))
+        np.zeros((width, samples)) for width in (positions.size, positions.size, len(tie.mass), len(tie.mass))
     ]
     # (receiver, source, time): newest force last, as the forces stand in their record.
     kernel = np.ascontiguousarray(whole.T[columns])
     backwards = np.ascontiguousarray(kernel[:, :, :0:-1])
     advance = _compiled() if (numba_is_there() if compiled is None else compiled) else _plain
-    state = np.zeros((3, len(law.mass)))
-    # The road's elevation may begin with a jump: forces act from t = 0 on, the first one by half of its hat.
-    first = law.springs * excitation.roughness[0] + law.dashpots * excitation.rate[0]
-    state[2] = -np.linalg.solve(law.mass, law.contact_map.T @ first)
+    state = np.zeros((3, len(tie.mass)))
+    # The elevation may begin with a jump: forces act from t = 0 on, the first one by half of its hat.
+    first = tie.springs * excitation.roughness[0] + tie.dashpots * excitation.rate[0]
+    state[2] = -np.linalg.solve(tie.mass, tie.contact_map.T @ first)
     begun = np.einsum("tij,j->it", earlier[:, columns], first)
-    vehicle_inverse = np.linalg.inv(law.mass + _lift(law, time_step))
-    for begin in range(0, samples - 1, STRIDE):
-        end = min(begin + STRIDE, samples - 1)
+    vehicle_inverse = np.linalg.inv(tie.mass + _lift(tie, time_step))
+    for begin in range(0, samples - 1, STRIDE.steps):
+        end = min(begin + STRIDE.steps, samples - 1)
         advance(
             time_step,
             kernel[:, :, 0].copy(),
             backwards,
             np.ascontiguousarray(begun),
             vehicle_inverse,
-            *law[1:],
+            *tie[1:],
             excitation.roughness,
             excitation.rate,
             state,
@@ -140,7 +147,7 @@ def duhamel(
             *record,
         )
         progress("convolving", end / (samples - 1))
-    record[0][:, 0], record[3][:, 0] = first, -np.linalg.solve(law.mass, law.contact_map.T @ first)
+    record[0][:, 0], record[3][:, 0] = first, -np.linalg.solve(tie.mass, tie.contact_map.T @ first)
     force, deflection, motion, acceleration = (values.T for values in record)
     values = {
         **journey.coordinates(vehicle),
@@ -250,12 +257,12 @@ def duhamel_loads(
     return labelled(values, LOADED, attributes)
 
 
-def weights(road: SampledGuideway, time_step: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def weights(guideway: SampledGuideway, time_step: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Integrals of the impulse response times the hat around each step, and times its two halves.
 
     Parameters
     ----------
-    road : SampledGuideway
+    guideway : SampledGuideway
         The moving impulse response, until it has faded.
     time_step : float
         Step [s], a whole multiple of the response's.
@@ -270,22 +277,22 @@ def weights(road: SampledGuideway, time_step: float) -> tuple[FloatArray, FloatA
     ValueError
         If the step is not a whole multiple of the response's.
     """
-    ratio = time_step / road.time_step
+    ratio = time_step / guideway.time_step
     count = round(ratio)
-    if count < 1 or abs(ratio - count) > FITTING:
+    if count < 1 or abs(ratio - count) > CONVOLUTION.fitting:
         raise ValueError(
-            f"time_step must be a whole multiple of {road.time_step!r} s, the step of the impulse response, "
+            f"time_step must be a whole multiple of {guideway.time_step!r} s, the step of the impulse response, "
             f"got {time_step!r} s"
         )
-    samples = road.samples
+    samples = guideway.samples
     size = np.abs(samples).max(axis=1)
-    needed = int(np.flatnonzero(size > FADED * size.max())[-1]) + 1 if size.any() else 1
+    needed = int(np.flatnonzero(size > CONVOLUTION.faded * size.max())[-1]) + 1 if size.any() else 1
     steps = -(-needed // count) + 1
     padded = np.zeros((steps * count + 1, samples.shape[1]))
     kept = min(len(samples), len(padded))
     padded[:kept] = samples[:kept]
     share = np.arange(count + 1) / count
-    trapezoid = np.full(count + 1, road.time_step)
+    trapezoid = np.full(count + 1, guideway.time_step)
     trapezoid[[0, -1]] *= 0.5
     pieces = np.lib.stride_tricks.sliding_window_view(padded, count + 1, axis=0)[::count]
     later, earlier = np.zeros((2, steps + 1, samples.shape[1]))
@@ -294,9 +301,9 @@ def weights(road: SampledGuideway, time_step: float) -> tuple[FloatArray, FloatA
     return later + earlier, later, earlier
 
 
-def _lift(law: Tie, time_step: float) -> FloatArray:
+def _lift(tie: Tie, time_step: float) -> FloatArray:
     beta, gamma, _, _ = SCHEMES["average_acceleration"]
-    return gamma * time_step * law.damping + beta * time_step**2 * law.stiffness
+    return gamma * time_step * tie.damping + beta * time_step**2 * tie.stiffness
 
 
 def _plain(

@@ -10,9 +10,6 @@ from scipy.sparse.linalg import splu
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
 
-# Bands wider than this are left to the sparse solver.
-WIDEST = 64
-
 
 def indefinite() -> SolveError:
     """Say that no step can be taken."""
@@ -48,7 +45,9 @@ def is_definite(matrix: sparse.csc_array) -> bool:
 
 def solver(matrix: sparse.csc_array) -> BandSolver | SparseSolver:
     """Factorise a positive definite matrix."""
-    return BandSolver(matrix) if half_width(matrix) <= WIDEST else SparseSolver(matrix)
+    # Bands wider than this are left to the sparse solver [any: of speed alone].
+    widest = 64
+    return BandSolver(matrix) if half_width(matrix) <= widest else SparseSolver(matrix)
 
 
 class BandSolver:

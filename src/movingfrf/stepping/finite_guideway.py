@@ -1,4 +1,4 @@
-"""Roads of finite length: matrices, and a row of them for any position."""
+"""Guideways of finite length: matrices, and a row of them for any position."""
 
 from __future__ import annotations
 
@@ -14,18 +14,13 @@ from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf.stepping.factors import is_definite
 
-# Positions [m], order of the derivative and, on a road with a width, places across [m] → one row per position,
+# Positions [m], order of the derivative and, on a guideway with a width, places across [m] → one row per position,
 # shape (position, dof).
 Interpolation = Callable[..., Any]
 
-# Two positions closer than this share of an element are one.
-SAME_PLACE = 1e-9
-
-# Share of the mass, scaled to the matrix, with which semidefiniteness is tested.
-LITTLE = 1e-8
-
-# Asymmetry of a matrix, relative to its largest entry, that is rounding.
-ASYMMETRY = 1e-9
+# Two positions closer than this share of an element are one. The compiled loops read it too, which know no other
+# kind of constant. [1e-10 to 1e-6]
+ELEMENT_ROUNDING = 1e-9
 
 
 class Mesh(NamedTuple):
@@ -148,6 +143,8 @@ class FiniteGuideway:
 
 
 def _symmetric(check: Checks, name: str, given: Any, unit: str) -> sparse.csc_array:
+    # Asymmetry, relative to the largest entry, that is rounding [1e-12 to 1e-6].
+    rounding = 1e-9
     try:
         matrix = sparse.csc_array(given, dtype=float)
     except (TypeError, ValueError):
@@ -157,32 +154,34 @@ def _symmetric(check: Checks, name: str, given: Any, unit: str) -> sparse.csc_ar
         check.refuse(name, f"must be a square matrix [{unit}], got shape {matrix.shape}")
     elif not np.isfinite(matrix.data).all():
         check.refuse(name, f"must be finite throughout [{unit}]")
-    elif matrix.nnz and abs(matrix - matrix.T).max() > ASYMMETRY * abs(matrix).max():
+    elif matrix.nnz and abs(matrix - matrix.T).max() > rounding * abs(matrix).max():
         check.refuse(name, f"must be a symmetric matrix [{unit}]")
     return matrix
 
 
-def _check_definite(check: Checks, road: FiniteGuideway) -> None:
+def _check_definite(check: Checks, guideway: FiniteGuideway) -> None:
     """Demand a positive definite mass, and damping and stiffness that are at least semidefinite."""
-    if not is_definite(road.mass):
+    if not is_definite(guideway.mass):
         check.refuse("mass", "must be positive definite: some motion has no inertia, or a negative one")
         return
-    heaviest = abs(road.mass).max()
-    for name, matrix in (("damping", road.damping), ("stiffness", road.stiffness)):
+    # Share of the mass, scaled to the matrix, with which semidefiniteness is tested [1e-11 to 1e-6].
+    little = 1e-8
+    heaviest = abs(guideway.mass).max()
+    for name, matrix in (("damping", guideway.damping), ("stiffness", guideway.stiffness)):
         largest = abs(matrix).max() if matrix.nnz else 0.0
         # A little of the mass makes a semidefinite matrix definite, and leaves an indefinite one what it is.
-        if largest and not is_definite(sparse.csc_array(matrix + LITTLE * largest / heaviest * road.mass)):
+        if largest and not is_definite(sparse.csc_array(matrix + little * largest / heaviest * guideway.mass)):
             check.refuse(name, "must be positive semidefinite: some motion would be fed with energy")
 
 
-def _check_rows(check: Checks, road: FiniteGuideway) -> None:
-    middle = np.array([0.5 * (road.interval[0] + road.interval[1])])
+def _check_rows(check: Checks, guideway: FiniteGuideway) -> None:
+    middle = np.array([0.5 * (guideway.interval[0] + guideway.interval[1])])
     try:
-        rows = road.rows(middle)
+        rows = guideway.rows(middle)
     except (TypeError, ValueError) as error:
         check.refuse("interpolation", f"must give rows for positions [m] and a derivative, but: {error}")
         return
-    if rows.shape != (1, road.dofs) or not np.isfinite(rows.data).all() or not rows.nnz:
+    if rows.shape != (1, guideway.dofs) or not np.isfinite(rows.data).all() or not rows.nnz:
         check.refuse(
-            "interpolation", f"must give finite rows of {road.dofs} values, one per unknown, got {rows.shape}"
+            "interpolation", f"must give finite rows of {guideway.dofs} values, one per unknown, got {rows.shape}"
         )

@@ -1,4 +1,4 @@
-"""A road as wide as it is: a plate on a viscoelastic foundation, by scikit-fem."""
+"""A guideway as wide as it is: a plate on a viscoelastic foundation, by scikit-fem."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from movingfrf.guideways.beams import EulerBernoulliBeam
 from movingfrf.guideways.foundations import ShearLayer, Spring
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import Track
-from movingfrf.stepping.finite_guideway import SAME_PLACE, FiniteGuideway
+from movingfrf.stepping.finite_guideway import ELEMENT_ROUNDING, FiniteGuideway
 from movingfrf.stepping.finite_track import (
     ENDS,
     absorption,
@@ -25,13 +25,11 @@ from movingfrf.stepping.finite_track import (
     require_fine,
     require_stretch,
 )
-from movingfrf.stepping.impulse import CANCELLING, PAPER, moving_impulse_response
+from movingfrf.stepping.impulse import CANCELLING, PINNED, moving_impulse_response
 from movingfrf.vehicles.vehicle import Vehicle
 
-# Unknowns at a node: w, ∂w/∂x, ∂w/∂y, ∂²w/∂x∂y. A held deflection holds the first and the third, a held slope along
-# the road the others.
+# Unknowns at a node: w, ∂w/∂x, ∂w/∂y, ∂²w/∂x∂y.
 NODAL = 4
-HELD_BY_DEFLECTION = np.array([True, False, True, False])
 
 
 class Stiffnesses(NamedTuple):
@@ -175,7 +173,7 @@ def finite_plate(
                 f"must be at least {int(np.ceil(width / bending_length(track)))}, so that an element is no wider "
                 f"than the length {bending_length(track):.4g} m over which the track bends, got {across!r}",
             )
-    count = (int(np.ceil((last - first) / element - SAME_PLACE)), count_across)
+    count = (int(np.ceil((last - first) / element - ELEMENT_ROUNDING)), count_across)
     begin, size = np.array([first, -0.5 * width]), np.array([last - first, width]) / count
     stiffnesses = _stiffnesses(track.beam.bending_stiffness / width, poisson, transverse)
 
@@ -184,9 +182,10 @@ def finite_plate(
 
     mass, damping, stiffness = _assembled(track, width, (begin, size, count), stiffnesses, dashpots)
     held = np.zeros((count[0] + 1, count[1] + 1, NODAL), bool)
+    # A held deflection holds the first unknown of a node and the third, a held slope along the guideway the others.
+    by_deflection = np.array([True, False, True, False])
     for node, end in ((0, both[0]), (-1, both[1])):
-        deflection, slope = ENDS[end]
-        held[node] = np.where(HELD_BY_DEFLECTION, deflection, slope)
+        held[node] = np.where(by_deflection, ENDS[end].deflection, ENDS[end].slope)
     kept = np.flatnonzero(~held.ravel())
     number = np.full(held.shape, -1)
     number.ravel()[kept] = np.arange(kept.size)
@@ -259,9 +258,9 @@ def struck_plate(
     ValidityWarning
         As `moving_impulse_response`.
     """
-    recipe = PAPER if plain else CANCELLING
+    recipe = PINNED if plain else CANCELLING
     half = 0.5 * recipe.length
-    roads = [
+    guideways = [
         finite_plate(
             track,
             width=width,
@@ -286,7 +285,7 @@ def struck_plate(
     )
     ahead, offset, source = on_the_left.T
     struck = moving_impulse_response(
-        roads,
+        guideways,
         speed=speed,
         offsets=ahead,
         across=offset,

@@ -16,29 +16,40 @@ from movingfrf._basics.smooth import smooth_step
 from movingfrf.guideways.beams import EulerBernoulliBeam
 from movingfrf.guideways.foundations import Foundation, OnMass, ShearLayer, Spring
 from movingfrf.guideways.track import Track
-from movingfrf.stepping.finite_guideway import SAME_PLACE, FiniteGuideway, Mesh
+from movingfrf.stepping.finite_guideway import ELEMENT_ROUNDING, FiniteGuideway, Mesh
 
-# Ends of a finite road → which of deflection and slope they hold.
+
+class End(NamedTuple):
+    """What an end of a finite guideway holds."""
+
+    deflection: bool
+    slope: bool
+    # Whether a guideway may have it that travels along: elsewhere what joins the guideway would have to jump.
+    follows: bool = False
+
+
+# How a finite guideway may end.
 ENDS = {
-    "pinned": (True, False),
-    "clamped": (True, True),
-    "guided": (False, True),
-    "free": (False, False),
-    "absorbing": (True, True),
+    "pinned": End(True, False),
+    "clamped": End(True, True, follows=True),
+    "guided": End(False, True),
+    "free": End(False, False),
+    "absorbing": End(True, True, follows=True),
 }
 
-# Those that a road may have which travels along: elsewhere the road that joins it would have to jump.
-FOLLOWING = {"absorbing", "clamped"}
 
-# Damping at the end of an absorbing stretch, as a multiple of 2√(km): strong, but reached so gradually that next to
-# nothing is reflected. Measured on the reference road, 15 to 20 m long: below 1e-3 of what comes in.
-ABSORPTION = 1.5
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Absorption:
+    """What tunes an absorbing stretch; in brackets, between what each number is safe."""
 
-# Length of such a stretch unless told otherwise [m].
-ABSORBING = 15.0
+    # Damping at its end, as a multiple of 2√(km): strong, but reached so gradually that next to nothing is
+    # reflected. Measured on the reference road, 15 to 20 m long: below 1e-3 of what comes in.
+    strength: float = 1.5  # [1.2 to 2]
+    # Its length unless told otherwise [m].
+    length: float = 15.0  # [12 to 20]
 
-# Cubic elements that a wave needs at least: with four its length is right to 1e-3.
-PER_WAVE = 4
+
+ABSORPTION = Absorption()
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +73,7 @@ class CubicRows:
 
 
 def cubic_functions(share: FloatArray, element: float, derivative: int) -> FloatArray:
-    """Cubic Hermite functions of one element, or their derivatives along the road.
+    """Cubic Hermite functions of one element, or their derivatives along the guideway.
 
     Parameters
     ----------
@@ -154,7 +165,7 @@ def finite_track(
     layers = _layers(track)
     with checking() as check:
         require_fine(check, track, element, band)
-    count = int(np.ceil((last - first) / element - SAME_PLACE))
+    count = int(np.ceil((last - first) / element - ELEMENT_ROUNDING))
     element = (last - first) / count
     integrals = [_assembled(element, count, order) for order in range(3)]
     node = np.zeros(len(layers.masses))
@@ -174,7 +185,7 @@ def finite_track(
         + sparse.kron(_assembled(element, count, 0, dashpots), sparse.eye_array(len(layers.masses)))
     )
     held = np.zeros((count + 1, 2), bool)
-    held[0], held[-1] = ENDS[both[0]], ENDS[both[1]]
+    held[0], held[-1] = ((ENDS[end].deflection, ENDS[end].slope) for end in both)
     kept = np.flatnonzero(np.repeat(~held.ravel(), len(layers.masses)))
     number = np.full(held.size * len(layers.masses), -1)
     number[kept] = np.arange(kept.size)
@@ -226,15 +237,16 @@ def require_stretch(
     """
     first, last = check.finite("first", interval[0], "m"), check.finite("last", interval[1], "m")
     check.positive("element", element, "m")
-    usual = min(ABSORBING, max(last - first, 0.0) / 3)
+    usual = min(ABSORPTION.length, max(last - first, 0.0) / 3)
     length = check.not_negative("absorbing", usual if absorbing is None else absorbing, "m")
     both = (ends, ends) if isinstance(ends, str) else tuple(ends)
     if len(both) != 2 or not all(isinstance(end, str) and end in ENDS for end in both):
         check.refuse("ends", f"must be one or two of {', '.join(ENDS)}, got {shown(ends)}")
-    if travels and not set(both) <= FOLLOWING:
+    following = {end for end, kind in ENDS.items() if kind.follows}
+    if travels and not set(both) <= following:
         check.refuse(
             "ends",
-            f"of a road that travels along must be among {', '.join(sorted(FOLLOWING))}, so that what joins and "
+            f"of a road that travels along must be among {', '.join(sorted(following))}, so that what joins and "
             f"leaves it is at rest, got {shown(ends)}",
         )
     if not check.faults and last - first < 4 * element:
@@ -261,6 +273,8 @@ def require_fine(check: Checks, track: Track, element: float, band: float) -> No
         Highest frequency whose waves the elements shall resolve [Hz].
     """
     assert isinstance(track.beam, EulerBernoulliBeam)
+    # Cubic elements that a wave needs at least: with four its length is right to 1e-3 [4 or more].
+    per_wave = 4
     bends_over = bending_length(track)
     inertia = track.beam.mass * (2 * np.pi * band) ** 2 - _layers(track).stiffness[0, 0]
     wavenumber = (max(inertia, 0.0) / track.beam.bending_stiffness) ** 0.25
@@ -271,10 +285,10 @@ def require_fine(check: Checks, track: Track, element: float, band: float) -> No
             f"must be at most {bends_over:.4g} m, the length (4 EI/k)^¼ over which this track bends under a load "
             f"at rest, got {element!r} m",
         )
-    elif element * PER_WAVE > wave:
+    elif element * per_wave > wave:
         check.refuse(
             "element",
-            f"must be at most {wave / PER_WAVE:.4g} m, {PER_WAVE} to the wave of {wave:.4g} m that runs along this "
+            f"must be at most {wave / per_wave:.4g} m, {per_wave} to the wave of {wave:.4g} m that runs along this "
             f"track at {band:g} Hz, got {element!r} m",
         )
 
@@ -303,7 +317,7 @@ def absorption(
         Damping per length of the whole width [N s/m²], shape of `positions`.
     """
     layers = _layers(track)
-    strength = ABSORPTION * 2 * np.sqrt(layers.support * layers.masses.sum())
+    strength = ABSORPTION.strength * 2 * np.sqrt(layers.support * layers.masses.sum())
     damping = np.zeros_like(positions)
     for end, distance in zip(ends, (positions - interval[0], interval[1] - positions), strict=True):
         if end == "absorbing" and length:

@@ -1,9 +1,10 @@
-"""The moving impulse response of a finite road: strike it, and travel along while it rings."""
+"""The moving impulse response of a finite guideway: strike it, and travel along while it rings."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -21,28 +22,41 @@ from movingfrf.stepping.requirements import require_across, require_stable_schem
 from movingfrf.stepping.schemes import Scheme, scheme_named
 from movingfrf.stepping.tie import no_vehicle
 
-# What is worth a word: what is left of the response at its end, of a wave that comes back from the ends of the road
-# (both relative to the largest), and the error of the step at the highest frequency of the band, (ω Δt)²/12.
-UNDECAYED, REFLECTED, STRETCHED = 1e-3, 1e-3, 1e-2
 
-# Share of a record that counts as its end, and of the road that counts as its ends.
-LATE, OUTER = 0.05, 0.1
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ringing:
+    """What tunes the record of a response; in brackets, between what each number is safe."""
 
-# A response is recorded in stretches of this length [s], until one stays below this share of the largest value.
-STRETCH, FADED = 0.1, 1e-6
+    # It is recorded in stretches of this length [s], ...
+    stretch: float = 0.1  # [0.05 to 0.5]
+    # ... until one stays below this share of the largest value, ...
+    faded: float = 1e-6  # [1e-8 to 1e-5]
+    # ... and for no longer than this unless asked for [s].
+    longest: float = 4.0  # [a convention]
 
-# Longest response that is recorded unless asked for [s].
-LONGEST = 4.0
 
-# Frequencies at which reflections are estimated, and points at each end of the road.
-FREQUENCIES, POINTS = 40, 8
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Validity:
+    """What about a response is worth a warning; in brackets, between what each number is safe."""
 
-# Either of two ends at both.
-EITHER = (("pinned", "pinned"), ("pinned", "guided"), ("guided", "pinned"), ("guided", "guided"))
+    # What is left of the response at its end, and of a wave that comes back from the ends of the guideway, relative
+    # to the largest; and the error of the step at the highest frequency of the band, (ω Δt)²/12.
+    undecayed: float = 1e-3  # [a convention]
+    reflected: float = 1e-3  # [a convention]
+    stretched: float = 1e-2  # [a convention]
+    # Share of a record that counts as its end, and of the guideway that counts as each of its ends.
+    late: float = 0.05  # [0.02 to 0.1]
+    outer: float = 0.1  # [0.05 to 0.1]
+    # Frequencies at which reflections are estimated, and points at each end of the guideway.
+    frequencies: int = 40  # [20 to 200]
+    points: int = 8  # [4 to 32]
+
+
+RINGING, VALIDITY = Ringing(), Validity()
 
 
 class Recipe(NamedTuple):
-    """How to strike a track: its length and elements [m], the step [s], the scheme, and the ends of each road."""
+    """How to strike a track: its length and elements [m], the step [s], the scheme, and each guideway's ends."""
 
     length: float
     element: float
@@ -51,10 +65,17 @@ class Recipe(NamedTuple):
     ends: tuple[tuple[str, str], ...]
 
 
-# The paper's road; and one of the same length whose end reflections cancel. The latter damps vibrations of single
-# elements, which the impulse excites and average acceleration keeps alive.
-PAPER = Recipe(40.0, 0.5, 1e-3, "average_acceleration", (("pinned", "pinned"),))
-CANCELLING = Recipe(40.0, 0.25, 2.5e-4, "generalised_alpha", EITHER)
+# The paper's guideway; and four of the same length, with either of two ends at both, whose end reflections cancel.
+# The scheme of the latter damps vibrations of single elements, which the impulse excites and average acceleration
+# keeps alive.
+PINNED = Recipe(40.0, 0.5, 1e-3, "average_acceleration", (("pinned", "pinned"),))
+CANCELLING = Recipe(
+    40.0,
+    0.25,
+    2.5e-4,
+    "generalised_alpha",
+    (("pinned", "pinned"), ("pinned", "guided"), ("guided", "pinned"), ("guided", "guided")),
+)
 
 
 def moving_impulse_response(
@@ -150,7 +171,9 @@ def moving_impulse_response(
         if duration is not None:
             check.positive("duration", duration, "s")
         row = scheme_named(check, scheme)
-        if not several or not all(isinstance(road, FiniteGuideway) and not road.travels for road in several):
+        if not several or not all(
+            isinstance(guideway, FiniteGuideway) and not guideway.travels for guideway in several
+        ):
             check.refuse("roads", "must be one or more roads that stand still")
         if not check.faults and not at.size:
             check.refuse("offsets", "must hold at least one offset [m]")
@@ -158,12 +181,15 @@ def moving_impulse_response(
             check.refuse(
                 "time_step", f"must be at most {0.25 / band:.3g} s to hold {band:g} Hz, got {time_step!r} s"
             )
-    first, last = max(road.interval[0] for road in several), min(road.interval[1] for road in several)
+    first, last = (
+        max(guideway.interval[0] for guideway in several),
+        min(guideway.interval[1] for guideway in several),
+    )
     starts = strike + np.append(at, 0.0)
     room = (last - starts.max() if speed > 0 else starts.min() - first) / abs(speed) if speed else np.inf
-    wide = any(road.width for road in several)
+    wide = any(guideway.width for guideway in several)
     with checking() as check:
-        length = min(room, LONGEST) if duration is None else duration
+        length = min(room, RINGING.longest) if duration is None else duration
         if starts.min() < first or starts.max() > last or length > room * (1 + 1e-9) or length < 2 * time_step:
             check.refuse(
                 "roads",
@@ -173,9 +199,9 @@ def moving_impulse_response(
             )
         if not wide and (beside.any() or sources.any()):
             check.refuse("across", "and strike_across must be 0 m on a road whose section moves as one")
-        for road in several:
-            require_across(check, road, np.concatenate([sources, sources + beside]))
-            require_stable_scheme(check, road, row, time_step)
+        for guideway in several:
+            require_across(check, guideway, np.concatenate([sources, sources + beside]))
+            require_stable_scheme(check, guideway, row, time_step)
     steps = int(length / time_step * (1 + 1e-12))
     require_memory(
         32.0 * steps * at.size * len(several), f"an impulse response of {length:g} s in steps of {time_step:g} s"
@@ -185,10 +211,10 @@ def moving_impulse_response(
         seen = sources == source
         blow = Blow(strike, source, speed, strike + at[seen], (sources + beside)[seen])
         records: list[FloatArray] = []
-        for road in several:
-            # What the first road has forgotten the others need not remember.
-            fading = FADED if duration is None and not pieces and not records else 0.0
-            records.append(_ringing(road, row, time_step, blow, steps, compiled, progress, fading=fading))
+        for guideway in several:
+            # What the first guideway has forgotten the others need not remember.
+            fading = RINGING.faded if duration is None and not pieces and not records else 0.0
+            records.append(_ringing(guideway, row, time_step, blow, steps, compiled, progress, fading=fading))
             steps = len(records[0]) - 1
         pieces[source] = np.mean(records, axis=0)
     response = np.empty((steps + 1, at.size))
@@ -260,14 +286,14 @@ def struck_track(
     ValidityWarning
         As `moving_impulse_response`.
     """
-    recipe = PAPER if plain else CANCELLING
+    recipe = PINNED if plain else CANCELLING
     half = 0.5 * recipe.length
-    roads = [
+    guideways = [
         finite_track(track, first=-half, last=half, element=recipe.element, ends=ends, band=band)
         for ends in recipe.ends
     ]
     return moving_impulse_response(
-        roads,
+        guideways,
         speed=speed,
         offsets=offsets,
         strike=0.0,
@@ -281,7 +307,7 @@ def struck_track(
 
 
 class Blow(NamedTuple):
-    """Where the road is struck, and the points that travel on from there and watch."""
+    """Where the guideway is struck, and the points that travel on from there and watch."""
 
     at: float  # [m]
     across: float  # [m]
@@ -291,7 +317,7 @@ class Blow(NamedTuple):
 
 
 def _ringing(
-    road: FiniteGuideway,
+    guideway: FiniteGuideway,
     scheme: Scheme,
     time_step: float,
     blow: Blow,
@@ -303,20 +329,20 @@ def _ringing(
 ) -> FloatArray:
     """Deflection at points that travel, after a unit impulse, shape (steps + 1, point); shorter if it dies away."""
     march = March(
-        road=road,
+        guideway=guideway,
         scheme=scheme,
         time_step=time_step,
         speed=blow.speed,
         contacts=np.empty(0),
         observers=blow.points,
         observers_across=blow.points_across,
-        law=no_vehicle(0),
+        tie=no_vehicle(0),
         compiled=compiled,
     )
     state = march.at_rest()
-    state.road[1] = march.mass_solver.solve(road.rows(np.array([blow.at]), 0, blow.across).toarray()[0])
-    march.released(state, np.zeros(road.dofs))
-    stretch = max(int(STRETCH / time_step), 1)
+    state.guideway[1] = march.mass_solver.solve(guideway.rows(np.array([blow.at]), 0, blow.across).toarray()[0])
+    march.released(state, np.zeros(guideway.dofs))
+    stretch = max(int(RINGING.stretch / time_step), 1)
     pieces: list[FloatArray] = [np.zeros((1, blow.points.size))]
     done, largest = 0, 0.0
     while done < steps:
@@ -343,8 +369,8 @@ def _ringing(
 
 def _undecayed(response: FloatArray, length: float) -> list[str]:
     size = np.abs(response).max()
-    left = float(np.abs(response[-max(1, int(LATE * len(response))) :]).max() / size) if size else 0.0
-    if left <= UNDECAYED:
+    left = float(np.abs(response[-max(1, int(VALIDITY.late * len(response))) :]).max() / size) if size else 0.0
+    if left <= VALIDITY.undecayed:
         return []
     return [
         f"the moving impulse response has not died away: after {length:.4g} s {left:.1e} of its largest value is "
@@ -354,16 +380,16 @@ def _undecayed(response: FloatArray, length: float) -> list[str]:
 
 def _stretched(band: float, time_step: float) -> list[str]:
     error = (2 * np.pi * band * time_step) ** 2 / 12
-    if error <= STRETCHED:
+    if error <= VALIDITY.stretched:
         return []
     return [
         f"the time step of {time_step:g} s is long for {band:g} Hz: vibrations there are slowed by {error:.1%}; "
-        f"{np.sqrt(12 * STRETCHED) / (2 * np.pi * band):.2g} s would do"
+        f"{np.sqrt(12 * VALIDITY.stretched) / (2 * np.pi * band):.2g} s would do"
     ]
 
 
 def _reflected(
-    roads: Sequence[FiniteGuideway],
+    guideways: Sequence[FiniteGuideway],
     scheme: Scheme,
     time_step: float,
     strike: float,
@@ -375,27 +401,28 @@ def _reflected(
     """Estimate what comes back from the ends.
 
     A wave that is e times as high at an end as where it began is e² times as high when it is back, e⁴ times when
-    it has been to both ends, e⁸ times when it has been there twice: what remains of one, two or four roads. What is
-    seen at an end holds the reflection as well; where the end reflects, the square of what passes half-way there
-    tells more.
+    it has been to both ends, e⁸ times when it has been there twice: what remains of one, two or four guideways.
+    What is seen at an end holds the reflection as well; where the end reflects, the square of what passes half-way
+    there tells more.
     """
-    road = roads[0]
-    first, last = road.interval
-    outer = OUTER * (last - first)
-    ends = np.concatenate([np.linspace(first, first + outer, POINTS), np.linspace(last - outer, last, POINTS)])
+    guideway = guideways[0]
+    first, last = guideway.interval
+    outer = VALIDITY.outer * (last - first)
+    stretches = ((first, first + outer), (last - outer, last))
+    ends = np.concatenate([np.linspace(*stretch, VALIDITY.points) for stretch in stretches])
     middles = 0.5 * (strike + np.array([first, last]))
     points = np.concatenate([[strike], middles, ends])
     # On the centre line, where no roll adds to what the blow itself brings about.
     blow = Blow(strike, 0.0, 0.0, points, 0.0)
-    records = _ringing(road, scheme, time_step, blow, steps, compiled, progress)
+    records = _ringing(guideway, scheme, time_step, blow, steps, compiled, progress)
     numbers = np.arange(float(points.size))
-    omega = 2 * np.pi * np.linspace(0.0, band, FREQUENCIES)
+    omega = 2 * np.pi * np.linspace(0.0, band, VALIDITY.frequencies)
     at_rest = SampledGuideway(response=records, time_step=time_step, offsets=numbers, speed=0.0)
     frf = np.abs(at_rest.moving_frf(numbers, 0.0, omega))
     share = np.minimum(frf[:, 3:].max(axis=1), frf[:, 1:3].max(axis=1) ** 2 / frf[:, 0]) / frf[:, 0]
-    back = share ** (2 * len(roads)) * frf[:, 0] / frf[:, 0].max()
+    back = share ** (2 * len(guideways)) * frf[:, 0] / frf[:, 0].max()
     worst = int(back.argmax())
-    if back[worst] <= REFLECTED:
+    if back[worst] <= VALIDITY.reflected:
         return []
     return [
         f"waves come back from the ends of the road: about {back[worst]:.1e} of the largest moving FRF, at "

@@ -1,15 +1,15 @@
-"""Banded linear algebra of a road and a few unknowns, compiled."""
+"""Banded linear algebra of a guideway and a few unknowns, compiled."""
 
 from __future__ import annotations
 
 import numpy as np
 from numba import njit
 
-# A product and a sum may be rounded once instead of twice; nothing else that changes results is allowed.
+# What the compiler may do: round a product and a sum once instead of twice; nothing else that changes results.
 FAST = {"contract", "nsz"}
 
-# Half-width of the bands.
-WIDTH = 3
+# Half-width of the bands of cubic elements with two unknowns at a node.
+HALF_WIDTH = 3
 
 
 @njit(cache=True, fastmath=FAST)
@@ -23,7 +23,7 @@ def factorise(bands, rows, columns, core):
     n = bands.shape[1]
     half = rows.shape[0]
     q = core.shape[0]
-    work = np.zeros((2, half + WIDTH, 4))
+    work = np.zeros((2, half + HALF_WIDTH, 4))
     for i in range(half):
         for d in range(4):
             work[0, i, d] = bands[d, i]
@@ -49,8 +49,8 @@ def factorise(bands, rows, columns, core):
         for b in range(a + 1):
             if a - b < 4:
                 core[a, b] = core[b, a] = bands[a - b, half + b]
-    for b in range(WIDTH):
-        for d in range(WIDTH - b):
+    for b in range(HALF_WIDTH):
+        for d in range(HALF_WIDTH - b):
             a = b + d
             core[a, b] += work[0, half + b, d]
             core[q - 1 - b, q - 1 - a] += work[1, half + b, d]
@@ -76,8 +76,8 @@ def solve(rows, columns, core, x, middle):
         b3, b2, b1 = b2, b1, b
     for r in range(q):
         middle[r] = x[half + r]
-    for r in range(WIDTH):
-        for near in range(WIDTH - r):
+    for r in range(HALF_WIDTH):
+        for near in range(HALF_WIDTH - r):
             middle[r] -= columns[half - 1 - near, r + near] * x[half - 1 - near]
             middle[q - 1 - r] -= columns[half - 1 - near, 4 + r + near] * x[last - (half - 1 - near)]
     for r in range(q):
@@ -97,7 +97,7 @@ def solve(rows, columns, core, x, middle):
 
 
 @njit(cache=True, fastmath=FAST)
-def influence(rows, columns, core, reach, first):
+def inverse_rows(rows, columns, core, reach, first):
     """Rows of the inverse, each cut to the entries that are not zero to rounding.
 
     `first` (n,) receives where each row begins; returns (n, reach).
@@ -138,13 +138,13 @@ def influence(rows, columns, core, reach, first):
 
 
 @njit(cache=True, fastmath=FAST)
-def product(stiffness, damping, displacement, velocity, force):
+def band_product(stiffness, damping, displacement, velocity, force):
     """Force = −(K u + C v) for band matrices."""
     n = force.size
-    for edge in range(2 * WIDTH):
-        i = edge if edge < WIDTH else n - 2 * WIDTH + edge
+    for edge in range(2 * HALF_WIDTH):
+        i = edge if edge < HALF_WIDTH else n - 2 * HALF_WIDTH + edge
         total = stiffness[0, i] * displacement[i] + damping[0, i] * velocity[i]
-        for d in range(1, WIDTH + 1):
+        for d in range(1, HALF_WIDTH + 1):
             if i + d < n:
                 total += stiffness[d, i] * displacement[i + d] + damping[d, i] * velocity[i + d]
             if i >= d:
@@ -160,7 +160,7 @@ def product(stiffness, damping, displacement, velocity, force):
     v0, v1, v2, v3 = velocity[3:], velocity[4:], velocity[5:], velocity[6:]
     y1, y2, y3 = velocity[2:], velocity[1:], velocity
     inner = force[3:]
-    for i in range(n - 2 * WIDTH):
+    for i in range(n - 2 * HALF_WIDTH):
         elastic = k0[i] * u0[i] + k1[i] * u1[i] + k2[i] * u2[i] + k3[i] * u3[i]
         elastic += l1[i] * w1[i] + l2[i] * w2[i] + l3[i] * w3[i]
         viscous = c0[i] * v0[i] + c1[i] * v1[i] + c2[i] * v2[i] + c3[i] * v3[i]

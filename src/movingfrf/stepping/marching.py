@@ -1,7 +1,8 @@
-"""Marching through time: a finite road and, on it, a vehicle or prescribed forces.
+"""Marching through time: a finite guideway and, on it, a vehicle or prescribed forces.
 
-Every method of this package that steps a road uses `March`: it factorises what is constant once and then advances,
-compiled where numba is installed and the road is a chain of beam elements, in NumPy and LAPACK otherwise.
+Every method of this package that steps a guideway uses `March`: it factorises what is constant once and then
+advances, compiled where numba is installed and the guideway is a chain of beam elements, in NumPy and LAPACK
+otherwise.
 """
 
 from __future__ import annotations
@@ -20,38 +21,49 @@ from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.stepping.exchange import SOLVED, Iteration, exchanged, numba_is_there
 from movingfrf.stepping.factors import BandSolver, SparseSolver, bands_of, half_width, indefinite, solver
-from movingfrf.stepping.finite_guideway import SAME_PLACE, FiniteGuideway
+from movingfrf.stepping.finite_guideway import ELEMENT_ROUNDING, FiniteGuideway
 from movingfrf.stepping.finite_track import CubicRows
 from movingfrf.stepping.schemes import Scheme
 from movingfrf.stepping.tie import Tie
 
-# Steps between two looks at the keyboard, how many unknowns times steps that may be, and, in NumPy, how many
-# entries of interpolating rows, which are held for all these steps at once.
-STRIDE, WORK, ENTRIES = 20_000, 20_000_000, 1_000_000
 
-# Unknowns that the compiled band solver needs at least.
-FEWEST = 9
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stride:
+    """How far a march goes between two looks at the keyboard; results do not depend on it.
 
-# Entries of the inverse below this share of its diagonal are zero to rounding.
-NEGLIGIBLE = 1e-17
+    In brackets, between what each number is safe: below, calls take the time; above, an interruption comes late or
+    rows take memory.
+    """
+
+    steps: int = 20_000  # [1000 to 20 000]
+    work: int = 20_000_000  # unknowns times steps [1e6 to 2e7]
+    # In NumPy, entries of interpolating rows, which are held for all these steps at once.
+    entries: int = 1_000_000  # [1e4 to 1e7]
+
+
+STRIDE = Stride()
+
+# Unknowns that the compiled band solver needs at least: three from either end, and three in the middle.
+FEWEST_UNKNOWNS = 9
 
 
 @dataclass(slots=True)
 class State:
-    """Where a march has got to: displacement, velocity and acceleration of road and vehicle, forces on the road."""
+    """Where a march has got to: motion of guideway and vehicle, forces on the guideway."""
 
-    road: FloatArray  # (3, dof)
+    # Displacement, velocity and acceleration.
+    guideway: FloatArray  # (3, dof)
     body: FloatArray  # (3, vehicle dof)
     acting: FloatArray  # (contact,)
-    # Elements by which a travelling road has moved on.
+    # Elements by which a travelling guideway has moved on.
     shifted: IntArray = field(default_factory=lambda: np.zeros(1, np.int64))
 
     def copied(self) -> State:
         """Return a state that can be marched on without changing this one."""
-        return State(self.road.copy(), self.body.copy(), self.acting.copy(), self.shifted.copy())
+        return State(self.guideway.copy(), self.body.copy(), self.acting.copy(), self.shifted.copy())
 
 
-class Record(NamedTuple):
+class Trace(NamedTuple):
     """What was seen on the way; row k belongs to step k, row 0 to the state at the start."""
 
     force: FloatArray  # (time, contact) contact force without what was prescribed
@@ -64,12 +76,12 @@ class Record(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class March:
-    """One road, one scheme, one set of contacts: everything that stays constant, factorised once.
+    """One guideway, one scheme, one set of contacts: everything that stays constant, factorised once.
 
     Parameters
     ----------
-    road : FiniteGuideway
-        The road.
+    guideway : FiniteGuideway
+        The guideway.
     scheme : Scheme
         Row of the scheme.
     time_step : float
@@ -78,7 +90,7 @@ class March:
         Speed of the contacts [m/s].
     contacts, observers : ndarray
         Where they stand at step 0 [m].
-    law : Law
+    tie : Tie
         What happens at the contacts.
     iteration : Iteration
         How contact forces are found.
@@ -90,13 +102,13 @@ class March:
         Where they stand left of the centre line [m].
     """
 
-    road: FiniteGuideway
+    guideway: FiniteGuideway
     scheme: Scheme
     time_step: float
     speed: float
     contacts: FloatArray
     observers: FloatArray
-    law: Tie
+    tie: Tie
     iteration: Iteration = SOLVED
     compiled: bool | None = None
     observers_travel: bool = True
@@ -106,24 +118,24 @@ class March:
     def at_rest(self, step: int = 0) -> State:
         """Everything at zero, at a step of the journey."""
         state = State(
-            np.zeros((3, self.road.dofs)), np.zeros((3, len(self.law.mass))), np.zeros(self.contacts.size)
+            np.zeros((3, self.guideway.dofs)), np.zeros((3, len(self.tie.mass))), np.zeros(self.contacts.size)
         )
-        if self.road.travels:
+        if self.guideway.travels:
             state.shifted[0] = self._elements(np.array(step))
         return state
 
     def places(self, step: int) -> FloatArray:
-        """Where the contacts stand at a step of the journey, seen from the road at rest there [m]."""
+        """Where the contacts stand at a step of the journey, seen from the guideway at rest there [m]."""
         return self._places(self.contacts, step, self.at_rest(step))
 
     def released(self, state: State, force: FloatArray) -> None:
-        """Give the road the acceleration that fits its displacement, its velocity and forces on it (dof,)."""
-        u, v, _ = state.road
-        force = force - self.road.stiffness @ u - self.road.damping @ v
-        state.road[2] = self.mass_solver.solve(force)
+        """Give the guideway the acceleration that fits its displacement, its velocity and forces on it (dof,)."""
+        u, v, _ = state.guideway
+        force = force - self.guideway.stiffness @ u - self.guideway.damping @ v
+        state.guideway[2] = self.mass_solver.solve(force)
 
     def begun(self, state: State, roughness: FloatArray, rate: FloatArray, load: FloatArray, step: int = 0) -> None:
-        """Give a state the contact forces and accelerations that fit it and the road under the contacts.
+        """Give a state the contact forces and accelerations that fit it and the guideway under the contacts.
 
         Parameters
         ----------
@@ -134,16 +146,16 @@ class March:
         step : int
             Step of the journey at which the state stands.
         """
-        law, road = self.law, self.road
-        (u, v, _), (z, dz, _) = state.road, state.body
+        tie, guideway = self.tie, self.guideway
+        (u, v, _), (z, dz, _) = state.guideway, state.body
         at = self._places(self.contacts, step, state)
-        rows = road.rows(at, 0, self.contacts_across)
-        force = law.springs * (law.contact_map @ z - rows @ u + roughness)
-        if law.dashpots.any():
-            sinking = rows @ v + self.speed * (road.rows(at, 1, self.contacts_across) @ u)
-            force += law.dashpots * (law.contact_map @ dz - sinking + rate)
+        rows = guideway.rows(at, 0, self.contacts_across)
+        force = tie.springs * (tie.contact_map @ z - rows @ u + roughness)
+        if tie.dashpots.any():
+            sinking = rows @ v + self.speed * (guideway.rows(at, 1, self.contacts_across) @ u)
+            force += tie.dashpots * (tie.contact_map @ dz - sinking + rate)
         state.acting[:] = force + load
-        state.body[2] = self._mass_inverse @ (-law.damping @ dz - law.stiffness @ z - law.contact_map.T @ force)
+        state.body[2] = self._mass_inverse @ (-tie.damping @ dz - tie.stiffness @ z - tie.contact_map.T @ force)
         self.released(state, rows.T @ state.acting)
 
     def prepare(self) -> None:
@@ -162,7 +174,7 @@ class March:
         origin: int = 0,
         stage: str = "stepping",
         progress: Progress = silent,
-    ) -> Record:
+    ) -> Trace:
         """Advance by some steps; `state` is advanced in place.
 
         Parameters
@@ -174,7 +186,7 @@ class March:
         roughness, rate : ndarray, shape (steps + 1, contact)
             Elevation [m] and its rate of change [m/s] under the contacts.
         loads : ndarray, shape (steps + 1, contact) or (1, contact)
-            Prescribed forces on the road [N]; one row: constant.
+            Prescribed forces on the guideway [N]; one row: constant.
         origin : int
             Step of the journey at which `state` stands.
         stage : str
@@ -184,7 +196,7 @@ class March:
 
         Returns
         -------
-        Record
+        Trace
             With `steps + 1` rows.
 
         Raises
@@ -192,19 +204,19 @@ class March:
         SolveError
             If the exchange of contact forces does not come to agree, or a result is not finite.
         """
-        contacts, dofs = self.contacts.size, len(self.law.mass)
+        contacts, dofs = self.contacts.size, len(self.tie.mass)
         widths = (contacts, contacts, self.observers.size, dofs, dofs)
         record: list[FloatArray] = [np.empty((steps + 1, width)) for width in widths]
         record[0][0] = state.acting - loads[0]
         watched = self._places(self.observers, origin, state) if self.observers_travel else self.observers
-        touched = self.road.rows(self._places(self.contacts, origin, state), 0, self.contacts_across)
-        record[1][0] = touched @ state.road[0]
-        record[2][0] = self.road.rows(watched, 0, self.observers_across) @ state.road[0]
+        touched = self.guideway.rows(self._places(self.contacts, origin, state), 0, self.contacts_across)
+        record[1][0] = touched @ state.guideway[0]
+        record[2][0] = self.guideway.rows(watched, 0, self.observers_across) @ state.guideway[0]
         record[3][0], record[4][0] = state.body[0], state.body[2]
-        stride, advance = min(STRIDE, WORK // self.road.dofs), self._compiled
+        stride, advance = min(STRIDE.steps, STRIDE.work // self.guideway.dofs), self._compiled
         if not self.uses_compiled:
             entries = touched.nnz + self.observers.size
-            stride, advance = min(stride, ENTRIES // max(entries, 1)), self._plain
+            stride, advance = min(stride, STRIDE.entries // max(entries, 1)), self._plain
         stride = max(stride, 1)
         iterations, begin = 0, 0
         while begin < steps:
@@ -226,7 +238,7 @@ class March:
             begin = end
             progress(stage, end / steps)
         force, deflection, observed, motion, acceleration = record
-        return Record(force, deflection, observed, motion, acceleration, iterations)
+        return Trace(force, deflection, observed, motion, acceleration, iterations)
 
     def __post_init__(self) -> None:
         """Refuse compiled loops where they do not apply."""
@@ -243,14 +255,14 @@ class March:
 
     @cached_property
     def _suits(self) -> bool:
-        """Whether the road is a chain of beam elements, with bands of half-width three."""
-        road, rows = self.road, self.road.interpolation
+        """Whether the guideway is a chain of beam elements, with bands of half-width three."""
+        guideway, rows = self.guideway, self.guideway.interpolation
         return (
-            road.mesh is not None
+            guideway.mesh is not None
             and isinstance(rows, CubicRows)
-            and rows.mesh is road.mesh
-            and road.dofs >= FEWEST
-            and max(half_width(matrix) for matrix in (road.mass, road.damping, road.stiffness)) <= 3
+            and rows.mesh is guideway.mesh
+            and guideway.dofs >= FEWEST_UNKNOWNS
+            and max(half_width(matrix) for matrix in (guideway.mass, guideway.damping, guideway.stiffness)) <= 3
         )
 
     @cached_property
@@ -258,25 +270,25 @@ class March:
         """(1 − α_m) M + (1 − α_f)(γ Δt C + β Δt² K)."""
         beta, gamma, alpha_m, alpha_f = self.scheme
         dt = self.time_step
-        moving = gamma * dt * self.road.damping + beta * dt * dt * self.road.stiffness
-        return sparse.csc_array((1 - alpha_m) * self.road.mass + (1 - alpha_f) * moving)
+        moving = gamma * dt * self.guideway.damping + beta * dt * dt * self.guideway.stiffness
+        return sparse.csc_array((1 - alpha_m) * self.guideway.mass + (1 - alpha_f) * moving)
 
     @cached_property
     def vehicle_inverse(self) -> FloatArray:
         """Inverse of the same for the vehicle."""
         beta, gamma, alpha_m, alpha_f = self.scheme
-        dt, law = self.time_step, self.law
-        moving = gamma * dt * law.damping + beta * dt * dt * law.stiffness
-        return np.linalg.inv((1 - alpha_m) * law.mass + (1 - alpha_f) * moving)
+        dt, tie = self.time_step, self.tie
+        moving = gamma * dt * tie.damping + beta * dt * dt * tie.stiffness
+        return np.linalg.inv((1 - alpha_m) * tie.mass + (1 - alpha_f) * moving)
 
     @cached_property
     def _mass_inverse(self) -> FloatArray:
-        return np.linalg.inv(self.law.mass)
+        return np.linalg.inv(self.tie.mass)
 
     @cached_property
     def mass_solver(self) -> BandSolver | SparseSolver:
-        """Solves with the road's mass matrix."""
-        return solver(self.road.mass)
+        """Solves with the guideway's mass matrix."""
+        return solver(self.guideway.mass)
 
     @cached_property
     def _solver(self) -> BandSolver | SparseSolver:
@@ -287,8 +299,10 @@ class March:
         """What the compiled loops read."""
         from movingfrf.stepping import kernels
 
-        road, n = self.road, self.road.dofs
-        bands = [bands_of(matrix, 3) for matrix in (self.effective, road.mass, road.damping, road.stiffness)]
+        guideway, n = self.guideway, self.guideway.dofs
+        bands = [
+            bands_of(matrix, 3) for matrix in (self.effective, guideway.mass, guideway.damping, guideway.stiffness)
+        ]
         half = (n - 3) // 2
         rows, columns = np.zeros((half, 6)), np.zeros((half, 8))
         core: FloatArray = np.zeros((n - 2 * half, n - 2 * half))
@@ -298,26 +312,28 @@ class March:
         core = np.linalg.inv(core)
         reach = self._reach(rows, columns, core)
         first = np.zeros(n, np.int64)
-        needs_inverse = bool(len(self.law.mass))
-        inverse = kernels.influence(rows, columns, core, reach, first) if needs_inverse else np.zeros((1, 1))
-        mesh = road.mesh
+        needs_inverse = bool(len(self.tie.mass))
+        inverse = kernels.inverse_rows(rows, columns, core, reach, first) if needs_inverse else np.zeros((1, 1))
+        mesh = guideway.mesh
         assert mesh is not None
         return {
-            "road": (*bands[1:], rows, columns, core, inverse, first),
-            "mesh": (np.array([mesh.first, mesh.element]), mesh.number.astype(np.int64), road.travels),
+            "guideway": (*bands[1:], rows, columns, core, inverse, first),
+            "mesh": (np.array([mesh.first, mesh.element]), mesh.number.astype(np.int64), guideway.travels),
         }
 
     def _reach(self, rows: FloatArray, columns: FloatArray, core: FloatArray) -> int:
-        """Width outside which a row of the inverse is zero to rounding, judged in the middle of the road."""
+        """Width outside which a row of the inverse is zero to rounding, judged in the middle of the guideway."""
         from movingfrf.stepping import kernels
 
-        n = self.road.dofs
+        # Entries below this share of the largest are zero to rounding [1e-20 to 1e-16].
+        negligible = 1e-17
+        n = self.guideway.dofs
         reach = 0
         for unknown in (n // 2, n // 2 + 1):
             row = np.zeros(n)
             row[unknown] = 1.0
             kernels.solve(rows, columns, core, row, np.empty(len(core)))
-            seen = np.flatnonzero(np.abs(row) > NEGLIGIBLE * np.abs(row).max())
+            seen = np.flatnonzero(np.abs(row) > negligible * np.abs(row).max())
             reach = max(reach, int(np.abs(seen - unknown).max()))
         return min(n, 2 * reach + 4)
 
@@ -332,11 +348,11 @@ class March:
     ) -> tuple[int, int]:
         from movingfrf.stepping import compiled
 
-        law = self.law
+        tie = self.tie
         loop: Callable[..., tuple[int, int]] = compiled.march
         return loop(
             np.array([self.time_step, *self.scheme]),
-            *self._tables["road"],
+            *self._tables["guideway"],
             *self._tables["mesh"],
             self.contacts,
             self.observers,
@@ -344,13 +360,13 @@ class March:
             self.observers_travel,
             self.vehicle_inverse,
             self._mass_inverse,
-            *law,
+            *tie,
             np.ascontiguousarray(roughness),
             np.ascontiguousarray(rate),
             np.ascontiguousarray(loads),
             float(self.iteration.tolerance),
             self.iteration.most,
-            state.road,
+            state.guideway,
             state.body,
             state.acting,
             state.shifted,
@@ -369,14 +385,14 @@ class March:
     ) -> tuple[int, int]:
         """Advance as `compiled.march` does, one array operation after the other."""
         beta, gamma, alpha_m, alpha_f = self.scheme
-        dt, law, road, keep = self.time_step, self.law, self.road, 1 - alpha_f
-        mass, damping, stiffness = road.mass, road.damping, road.stiffness
-        (u, v, a), (z, dz, ddz) = state.road, state.body
+        dt, tie, guideway, keep = self.time_step, self.tie, self.guideway, 1 - alpha_f
+        mass, damping, stiffness = guideway.mass, guideway.damping, guideway.stiffness
+        (u, v, a), (z, dz, ddz) = state.guideway, state.body
         free_u, free_v, lift_u, lift_v = (0.5 - beta) * dt * dt, (1 - gamma) * dt, beta * dt * dt, gamma * dt
-        lifted = -keep * self.vehicle_inverse @ law.contact_map.T
-        own = law.contact_map @ lifted
+        lifted = -keep * self.vehicle_inverse @ tie.contact_map.T
+        own = tie.contact_map @ lifted
         contacts, identity = self.contacts.size, np.eye(self.contacts.size)
-        dashed = bool(law.dashpots.any())
+        dashed = bool(tie.dashpots.any())
         worst = 0
         origin, begin, end = steps
         moved_on = self._elements(origin + np.arange(begin + 1, end + 1))
@@ -392,11 +408,11 @@ class March:
         )
         for step in range(begin + 1, end + 1):
             now = step - begin - 1
-            if road.travels:
+            if guideway.travels:
                 self._move_on(int(moved_on[now]), state)
             at, values = rows.at(now)
             load, earlier = loads[min(step, len(loads) - 1)], loads[min(step - 1, len(loads) - 1)]
-            right = np.zeros((road.dofs, 1 + contacts), order="F")
+            right = np.zeros((guideway.dofs, 1 + contacts), order="F")
             right[:, 0] = -(stiffness @ (u + keep * (dt * v + free_u * a))) - damping @ (v + keep * free_v * a)
             if alpha_m:
                 right[:, 0] -= alpha_m * (mass @ a)
@@ -408,25 +424,25 @@ class March:
             solved = self._solver.solve(right)
             free_a, per_force = solved[:, 0], solved[:, 1:]
             force: FloatArray = np.zeros(contacts)
-            if len(law.mass):
+            if len(tie.mass):
                 free_z, free_dz = z + dt * dz + free_u * ddz, dz + free_v * ddz
-                push = -law.stiffness @ (keep * free_z + alpha_f * z) - law.damping @ (
+                push = -tie.stiffness @ (keep * free_z + alpha_f * z) - tie.damping @ (
                     keep * free_dz + alpha_f * dz
                 )
-                push -= alpha_m * (law.mass @ ddz) + alpha_f * law.contact_map.T @ (state.acting - earlier)
+                push -= alpha_m * (tie.mass @ ddz) + alpha_f * tie.contact_map.T @ (state.acting - earlier)
                 free_ddz = self.vehicle_inverse @ push
                 moved = u + dt * v + free_u * a + lift_u * free_a
                 yields = np.einsum("jq,jql->jl", values, per_force[at])
                 down = (values * moved[at]).sum(axis=1)
-                gap = law.springs * (law.contact_map @ (free_z + lift_u * free_ddz) - down + roughness[step])
-                matrix = identity + law.springs[:, None] * lift_u * (yields - own)
+                gap = tie.springs * (tie.contact_map @ (free_z + lift_u * free_ddz) - down + roughness[step])
+                matrix = identity + tie.springs[:, None] * lift_u * (yields - own)
                 if dashed:
                     along, inclines = slopes.at(now)
                     sinking = (values * (v[at] + free_v * a[at] + lift_v * free_a[at])).sum(axis=1)
                     sinking += self.speed * (inclines * moved[along]).sum(axis=1)
-                    gap += law.dashpots * (law.contact_map @ (free_dz + lift_v * free_ddz) - sinking + rate[step])
+                    gap += tie.dashpots * (tie.contact_map @ (free_dz + lift_v * free_ddz) - sinking + rate[step])
                     yielding = np.einsum("jq,jql->jl", inclines, per_force[along])
-                    matrix += law.dashpots[:, None] * (lift_v * (yields - own) + self.speed * lift_u * yielding)
+                    matrix += tie.dashpots[:, None] * (lift_v * (yields - own) + self.speed * lift_u * yielding)
                 if self.iteration.tolerance:
                     force, count = exchanged(matrix, gap, state.acting - earlier, self.iteration)
                     if count < 0:
@@ -449,39 +465,39 @@ class March:
             record[3][step], record[4][step] = z, ddz
             if alpha_m or alpha_f:
                 # What such a scheme carries as acceleration belongs to a later instant; that of this one balances.
-                push = -law.stiffness @ z - law.damping @ dz - law.contact_map.T @ force
+                push = -tie.stiffness @ z - tie.damping @ dz - tie.contact_map.T @ force
                 record[4][step] = self._mass_inverse @ push
         return -1, worst
 
     def _rows(
         self, places: tuple[FloatArray, ArrayLike], steps: IntArray, moved_on: IntArray, derivative: int = 0
     ) -> _Rows:
-        """Rows of some places at some steps of the journey, on a road that has moved on by so many elements."""
+        """Rows of some places at some steps of the journey, on a guideway that has moved on by so many elements."""
         along, across = places
-        travelled = self.speed * self.time_step * steps - moved_on * self.road.spacing
+        travelled = self.speed * self.time_step * steps - moved_on * self.guideway.spacing
         positions = travelled[:, None] + along
         beside = np.broadcast_to(across, positions.shape).ravel()
-        return _Rows.of(self.road.rows(positions.ravel(), derivative, beside), len(along))
+        return _Rows.of(self.guideway.rows(positions.ravel(), derivative, beside), len(along))
 
     def _places(self, places: FloatArray, step: int, state: State) -> FloatArray:
-        """Where contacts or observers stand at a step of the journey, seen from the road."""
-        return places + (self.speed * self.time_step * step - state.shifted[0] * self.road.spacing)
+        """Where contacts or observers stand at a step of the journey, seen from the guideway."""
+        return places + (self.speed * self.time_step * step - state.shifted[0] * self.guideway.spacing)
 
     def _elements(self, steps: IntArray) -> IntArray:
-        """Whole elements that a travelling road has moved on by some steps of the journey."""
-        if not self.road.travels:
+        """Whole elements that a travelling guideway has moved on by some steps of the journey."""
+        if not self.guideway.travels:
             return np.zeros(np.shape(steps), np.int64)
-        elements = np.floor(self.speed * self.time_step * steps / self.road.spacing + SAME_PLACE)
+        elements = np.floor(self.speed * self.time_step * steps / self.guideway.spacing + ELEMENT_ROUNDING)
         return elements.astype(np.int64)
 
     def _move_on(self, elements: int, state: State) -> None:
-        """Let a travelling road follow until it has moved on by so many elements."""
+        """Let a travelling guideway follow until it has moved on by so many elements."""
         elements -= int(state.shifted[0])
         if elements > 0:
             state.shifted[0] += elements
-            gone = elements * self.road.column
-            state.road[:, :-gone] = state.road[:, gone:].copy()
-            state.road[:, -gone:] = 0.0
+            gone = elements * self.guideway.column
+            state.guideway[:, :-gone] = state.guideway[:, gone:].copy()
+            state.guideway[:, -gone:] = 0.0
 
 
 class _Rows(NamedTuple):

@@ -1,4 +1,4 @@
-"""Prescribed forces that travel along a finite road, stepped in time by Newmark's method."""
+"""Prescribed forces that travel along a finite guideway, stepped in time by Newmark's method."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from movingfrf._basics.version import VERSION
 from movingfrf.results.labels import LOADED, labelled
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.marching import March
-from movingfrf.stepping.requirements import require_kinds, require_on_road, require_stable_scheme
+from movingfrf.stepping.requirements import require_kinds, require_on_guideway, require_stable_scheme
 from movingfrf.stepping.schemes import Scheme, scheme_named
 from movingfrf.stepping.tie import no_vehicle
 
@@ -100,34 +100,34 @@ def newmark_loads(
                 "start", f"must be 0 m, and the speed positive, on a road that travels along, got {start!r} m"
             )
     with checking() as check:
-        # A road that travels along follows element by element.
+        # A guideway that travels along follows element by element.
         travelled = road.spacing if road.travels else speed * time_step * len(forces)
-        require_on_road(
+        require_on_guideway(
             check, road, start + np.concatenate([at, points]), (min(0.0, travelled), max(0.0, travelled))
         )
         require_stable_scheme(check, road, row, time_step)
     require_memory(16.0 * len(forces) * (at.size + points.size), f"{len(forces)} steps of {time_step:g} s")
     march = March(
-        road=road,
+        guideway=road,
         scheme=row,
         time_step=time_step,
         speed=speed,
         contacts=start + at,
         observers=start + points,
-        law=no_vehicle(at.size),
+        tie=no_vehicle(at.size),
         compiled=compiled,
     )
     state = march.at_rest()
     state.acting[:] = forces[0]
     march.released(state, road.rows(march.places(0)).T @ forces[0])
     nothing: FloatArray = np.zeros_like(forces)
-    record = march.run(len(forces) - 1, state, roughness=nothing, rate=nothing, loads=forces, progress=progress)
+    trace = march.run(len(forces) - 1, state, roughness=nothing, rate=nothing, loads=forces, progress=progress)
     values = {
         "time": time_step * np.arange(len(forces)),
         "load": at,
         "point": points,
         "force": forces,
-        "deflection": record.observed,
+        "deflection": trace.observed,
     }
     attributes: dict[str, str | float | int] = {
         "title": "Response of a finite road to prescribed moving loads: Newmark's method",

@@ -1,4 +1,4 @@
-"""What a finite road, a scheme and a journey must fulfil before the first step."""
+"""What a finite guideway, a scheme and a journey must fulfil before the first step."""
 
 from __future__ import annotations
 
@@ -8,18 +8,9 @@ from scipy.linalg import eigvalsh
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Checks
 from movingfrf.stepping.factors import solver
-from movingfrf.stepping.finite_guideway import SAME_PLACE, FiniteGuideway
+from movingfrf.stepping.finite_guideway import ELEMENT_ROUNDING, FiniteGuideway
 from movingfrf.stepping.schemes import Scheme
 from movingfrf.vehicles.vehicle import Vehicle
-
-# Unknowns of which all natural frequencies are computed to find the highest.
-FEW = 50
-
-# Share of a road at which nothing special happens.
-ODD = 0.43219
-
-# Places of the road at which its answer to a contact spring is looked at.
-PLACES = 65
 
 
 def require_kinds(check: Checks, **given: tuple[object, type]) -> None:
@@ -42,66 +33,67 @@ def require_kinds(check: Checks, **given: tuple[object, type]) -> None:
             check.refuse(name, f"must be a {kind.__name__}{hint}, got a {type(value).__name__}")
 
 
-def require_on_road(
-    check: Checks, road: FiniteGuideway, positions: FloatArray, travel: tuple[float, float]
+def require_on_guideway(
+    check: Checks, guideway: FiniteGuideway, positions: FloatArray, travel: tuple[float, float]
 ) -> None:
-    """Refuse a journey that leads off the road.
+    """Refuse a journey that leads off the guideway.
 
     Parameters
     ----------
     check : Checks
         Collects the fault.
-    road : FiniteGuideway
-        The road.
+    guideway : FiniteGuideway
+        The guideway.
     positions : ndarray
         Where contacts and observers stand [m].
     travel : tuple of float
         How far they travel, backwards and forwards [m].
     """
     first, last = positions.min() + min(travel), positions.max() + max(travel)
-    slack = SAME_PLACE * (1 + abs(last))
-    if first < road.interval[0] - slack or last > road.interval[1] + slack:
+    slack = ELEMENT_ROUNDING * (1 + abs(last))
+    if first < guideway.interval[0] - slack or last > guideway.interval[1] + slack:
         check.refuse(
             "road",
             f"must reach from {first:.6g} m to {last:.6g} m, where the contacts travel (run-in included), but it "
-            f"reaches from {road.interval[0]:.6g} m to {road.interval[1]:.6g} m",
+            f"reaches from {guideway.interval[0]:.6g} m to {guideway.interval[1]:.6g} m",
         )
 
 
-def require_across(check: Checks, road: FiniteGuideway, across: FloatArray) -> None:
-    """Refuse contacts or observers beside the road.
+def require_across(check: Checks, guideway: FiniteGuideway, across: FloatArray) -> None:
+    """Refuse contacts or observers beside the guideway.
 
     Parameters
     ----------
     check : Checks
         Collects the fault.
-    road : FiniteGuideway
-        The road.
+    guideway : FiniteGuideway
+        The guideway.
     across : ndarray
         Where they stand, left of the centre line [m].
     """
-    if road.width and np.abs(across).max() > 0.5 * road.width * (1 + SAME_PLACE):
+    if guideway.width and np.abs(across).max() > 0.5 * guideway.width * (1 + ELEMENT_ROUNDING):
         check.refuse(
             "road",
-            f"must be wide enough: it is {road.width:g} m wide, and a contact or a point stands "
+            f"must be wide enough: it is {guideway.width:g} m wide, and a contact or a point stands "
             f"{np.abs(across).max():.6g} m from its centre line",
         )
 
 
-def require_slopes(check: Checks, road: FiniteGuideway) -> None:
+def require_slopes(check: Checks, guideway: FiniteGuideway) -> None:
     """Refuse an interpolation whose first derivative is not the slope of its rows; a dashpot needs it.
 
     Parameters
     ----------
     check : Checks
         Collects the fault.
-    road : FiniteGuideway
-        The road.
+    guideway : FiniteGuideway
+        The guideway.
     """
-    first, last = road.interval
-    middle, step = first + ODD * (last - first), 1e-8 * (last - first)
-    rows = road.rows(np.array([middle - step, middle, middle + step])).toarray()
-    slope = road.rows(np.array([middle]), 1).toarray()[0]
+    first, last = guideway.interval
+    # A place at which nothing special happens: no simple share of the guideway.
+    middle, step = first + 0.43219 * (last - first), 1e-8 * (last - first)
+    rows = guideway.rows(np.array([middle - step, middle, middle + step])).toarray()
+    slope = guideway.rows(np.array([middle]), 1).toarray()[0]
     # Where a row has a kink, as linear functions have at a node, either side will do.
     sides = [(rows[1] - rows[0]) / step, (rows[2] - rows[1]) / step]
     scale = max(np.abs(sides).max(), np.abs(slope).max())
@@ -113,29 +105,29 @@ def require_slopes(check: Checks, road: FiniteGuideway) -> None:
         )
 
 
-def require_apart(check: Checks, road: FiniteGuideway, positions: FloatArray) -> None:
-    """Refuse contacts that stand closer to each other than the road's nodes."""
+def require_apart(check: Checks, guideway: FiniteGuideway, positions: FloatArray) -> None:
+    """Refuse contacts that stand closer to each other than the guideway's nodes."""
     distances = np.diff(np.unique(positions))
-    distances = distances[distances > SAME_PLACE]
-    if distances.size and distances.min() < road.spacing * (1 - SAME_PLACE):
+    distances = distances[distances > ELEMENT_ROUNDING]
+    if distances.size and distances.min() < guideway.spacing * (1 - ELEMENT_ROUNDING):
         check.refuse(
             "road",
             f"must have nodes at most {distances.min():.4g} m apart, the distance between two contacts, got "
-            f"{road.spacing:.4g} m",
+            f"{guideway.spacing:.4g} m",
         )
 
 
 def require_stable_scheme(
-    check: Checks, road: FiniteGuideway, scheme: Scheme, time_step: float, vehicle: Vehicle | None = None
+    check: Checks, guideway: FiniteGuideway, scheme: Scheme, time_step: float, vehicle: Vehicle | None = None
 ) -> None:
-    """Refuse a scheme that is unstable with this road and step, and say which condition fails.
+    """Refuse a scheme that is unstable with this guideway and step, and say which condition fails.
 
     Parameters
     ----------
     check : Checks
         Collects the fault.
-    road : FiniteGuideway
-        The road.
+    guideway : FiniteGuideway
+        The guideway.
     scheme : Scheme
         The scheme.
     time_step : float
@@ -154,13 +146,14 @@ def require_stable_scheme(
         )
         check.refuse("scheme", f"is unstable at every step, since {condition} does not hold: {tuple(scheme)}")
         return
-    highest, what = _highest(road), "the road's elements"
+    highest, what = _highest(guideway), "the road's elements"
     if vehicle is not None:
         # No vibration of the two together is faster than this: stiffnesses add, and so do squares of frequencies.
         springs = sum(contact.stiffness for contact in vehicle.contacts)
-        along, across = np.meshgrid(np.linspace(*road.interval, PLACES), np.unique(vehicle.across))
-        rows = road.rows(along.ravel(), 0, across.ravel()).toarray()
-        moved = float(np.einsum("pd,dp->p", rows, solver(road.mass).solve(rows.T)).max())
+        # At so many places the guideway's answer to a contact spring is looked at [33 to 257].
+        along, across = np.meshgrid(np.linspace(*guideway.interval, 65), np.unique(vehicle.across))
+        rows = guideway.rows(along.ravel(), 0, across.ravel()).toarray()
+        moved = float(np.einsum("pd,dp->p", rows, solver(guideway.mass).solve(rows.T)).max())
         own = float(eigvalsh(vehicle.held_stiffness, vehicle.matrices[0])[-1])
         highest, what = float(np.sqrt(highest**2 + own + springs * moved)), "road and vehicle"
     if time_step * highest > limit:
@@ -172,10 +165,11 @@ def require_stable_scheme(
         )
 
 
-def _highest(road: FiniteGuideway) -> float:
-    """Highest natural frequency of a road [rad/s]."""
+def _highest(guideway: FiniteGuideway) -> float:
+    """Highest natural frequency of a guideway [rad/s]."""
     from scipy.sparse.linalg import eigsh
 
-    if road.dofs <= FEW:
-        return float(eigvalsh(road.stiffness.toarray(), road.mass.toarray())[-1] ** 0.5)
-    return float(eigsh(road.stiffness, 1, M=road.mass, which="LM", return_eigenvectors=False)[0] ** 0.5)
+    # Of so few unknowns all natural frequencies are computed to find the highest [2 to 500].
+    if guideway.dofs <= 50:
+        return float(eigvalsh(guideway.stiffness.toarray(), guideway.mass.toarray())[-1] ** 0.5)
+    return float(eigsh(guideway.stiffness, 1, M=guideway.mass, which="LM", return_eigenvectors=False)[0] ** 0.5)

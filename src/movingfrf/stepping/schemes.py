@@ -7,9 +7,6 @@ from typing import NamedTuple
 
 from movingfrf._basics.checks import Checks, shown
 
-# Slack in the comparison of sums of parameters.
-ROUNDING = 1e-12
-
 
 class Scheme(NamedTuple):
     """Newmark's method, generalised: M a(n+1−α_m) + C v(n+1−α_f) + K u(n+1−α_f) = f(n+1−α_f).
@@ -41,11 +38,13 @@ class Scheme(NamedTuple):
         if self.gamma < 0.5:
             return 0.0
         if self.alpha_m or self.alpha_f:
+            # Slack in the comparison of sums of parameters [1e-15 to 1e-9].
+            rounding = 1e-12
             steady = self.alpha_m <= self.alpha_f <= 0.5
-            steady = steady and self.gamma >= 0.5 - self.alpha_m + self.alpha_f - ROUNDING
+            steady = steady and self.gamma >= 0.5 - self.alpha_m + self.alpha_f - rounding
             return (
                 float("inf")
-                if steady and self.beta >= 0.25 + 0.5 * (self.alpha_f - self.alpha_m) - ROUNDING
+                if steady and self.beta >= 0.25 + 0.5 * (self.alpha_f - self.alpha_m) - rounding
                 else 0.0
             )
         spare = 0.5 * self.gamma - self.beta

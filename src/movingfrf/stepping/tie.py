@@ -1,4 +1,4 @@
-"""What ties a wheel to the road within a time step."""
+"""What ties a wheel to the guideway within a time step."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ def tie_of(vehicle: Vehicle) -> Tie:
     return Tie(mass, damping, stiffness, contact_map, vehicle.springs, vehicle.dashpots)
 
 
-def stiffness_at_rest(law: Tie) -> FloatArray:
+def stiffness_at_rest(tie: Tie) -> FloatArray:
     """Force at the contacts per constant displacement below them [N/m], shape (contact, contact).
 
-    More of them than the vehicle has rigid motions share the weight as the road sags.
+    More of them than the vehicle has rigid motions share the weight as the guideway sags.
     """
-    pushed = law.contact_map.T * law.springs
-    held = law.stiffness + pushed @ law.contact_map
-    return np.diag(law.springs) - pushed.T @ np.linalg.solve(held, pushed)
+    pushed = tie.contact_map.T * tie.springs
+    held = tie.stiffness + pushed @ tie.contact_map
+    return np.diag(tie.springs) - pushed.T @ np.linalg.solve(held, pushed)
 
 
 def no_vehicle(contacts: int) -> Tie:

@@ -20,7 +20,7 @@ from movingfrf.response.moving_loads import moving_loads
 from movingfrf.response.simulation import simulate
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.scenario import Scenario
-from movingfrf.stepping.coupled import prepared
+from movingfrf.stepping.coupled import prepared_journey
 from movingfrf.stepping.duhamel import duhamel, duhamel_loads
 from movingfrf.stepping.exchange import SOLVED, Iteration, numba_is_there
 from movingfrf.stepping.finite_guideway import FiniteGuideway
@@ -197,7 +197,7 @@ def stepped(
 ) -> Solve:
     """Step vehicle and road; the weight in a run of its own, since the road is the same everywhere."""
     parts, _ = case.driven()
-    return prepared(
+    return prepared_journey(
         case.journey,
         (case.finite(travels=travels), *parts),
         iteration=iteration,

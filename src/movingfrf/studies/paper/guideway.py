@@ -15,7 +15,7 @@ from movingfrf.reports.curves import GREY
 from movingfrf.reports.tables import Column
 from movingfrf.response.line import SpectralGrid
 from movingfrf.stepping.finite_track import finite_track
-from movingfrf.stepping.impulse import CANCELLING, LONGEST, PAPER, moving_impulse_response, struck_track
+from movingfrf.stepping.impulse import CANCELLING, PINNED, RINGING, moving_impulse_response, struck_track
 from movingfrf.studies.comparison.convergence import quantities, relative_l2
 from movingfrf.studies.paper.drawing import STROKES, canvas, curve, logarithmic, title
 from movingfrf.studies.paper.outcome import AGREEMENT, DataTable, Outcome, Plot, Statement, Verdict, verdict
@@ -82,10 +82,10 @@ def moving_frf(study: Study) -> Outcome:
             "cancelled_error_under_load": fine[0],
         },
         computed=[
-            f"The road is struck at mid-length ({PAPER.length:g} m, elements of {PAPER.element:g} m, simply "
-            f"supported, average acceleration with steps of {1e3 * PAPER.time_step:g} ms), the response is read at "
-            "the points that travel on at 10 m/s, and transformed. The closed form is the sum of residues over the "
-            "waves of the infinitely long road.",
+            f"The road is struck at mid-length ({PINNED.length:g} m, elements of {PINNED.element:g} m, simply "
+            f"supported, average acceleration with steps of {1e3 * PINNED.time_step:g} ms), the response is read "
+            "at the points that travel on at 10 m/s, and transformed. The closed form is the sum of residues over "
+            "the waves of the infinitely long road.",
             "With the average of four roads of 40 m, pinned or guided at either end, elements of "
             f"{CANCELLING.element:g} m and steps of {1e3 * CANCELLING.time_step:g} ms, what the ends reflect "
             f"cancels and {number(fine[0], 2)} remains.",
@@ -263,7 +263,7 @@ def where_it_fails(study: Study) -> Outcome:
     over_speed = error[0, factors == 1.0][0]
     here = float(over_speed[speeds == study.speed][0])
     weak, stiff = float(error[0, 0, speeds == study.speed][0]), float(error[1, -1, speeds == study.speed][0])
-    longer = _error_of(study, study.guideway, study.speed, length=4 * PAPER.length)
+    longer = _error_of(study, study.guideway, study.speed, length=4 * PINNED.length)
     narrow, full = results["truck_narrow"], results["truck"]
     return Outcome(
         statements=[
@@ -295,7 +295,7 @@ def where_it_fails(study: Study) -> Outcome:
             "Nothing is truncated in this comparison. The error of the moving FRF is its largest difference from "
             f"the closed form below {STATED.truncation:g} Hz, over the largest |G|: the worst of a contact itself, "
             "one wheelbase ahead and one behind.",
-            f"What fails are the ends: a road of {4 * PAPER.length:g} m, struck in the same way and recorded for "
+            f"What fails are the ends: a road of {4 * PINNED.length:g} m, struck in the same way and recorded for "
             f"the same time, is off by {number(longer, 2)} (elements and step), 40 m by {number(here, 2)}. Waves "
             "come back from the ends the higher, the less the foundation damps them; a stiff foundation is "
             "damped less, relative to critical. Absorbing ends, a longer road, or the average of pinned and "
@@ -373,19 +373,19 @@ def _result_errors(study: Study, name: str) -> dict[str, float]:
     return relative_l2(found, wanted)
 
 
-def _error_of(study: Study, guideway: Track, speed: float, length: float = PAPER.length) -> float:
+def _error_of(study: Study, guideway: Track, speed: float, length: float = PINNED.length) -> float:
     """Largest error of the paper's moving FRF below 70 Hz, over the largest |G|, from a road of some length."""
     half = 0.5 * length
     # As long as the farthest point stays on the paper's 40 m, whatever the length is.
-    duration = (0.5 * PAPER.length - study.wheelbase) / speed
+    duration = (0.5 * PINNED.length - study.wheelbase) / speed
     with quiet():
         struck = moving_impulse_response(
-            finite_track(guideway, first=-half, last=half, element=PAPER.element, ends=PAPER.ends[0]),
+            finite_track(guideway, first=-half, last=half, element=PINNED.element, ends=PINNED.ends[0]),
             speed=speed,
             offsets=study.offsets,
             strike=0.0,
-            duration=min(duration, LONGEST),
-            time_step=PAPER.time_step,
+            duration=min(duration, RINGING.longest),
+            time_step=PINNED.time_step,
         )
     exact = closed_form(guideway, BAND, study.offsets, speed)
     found = struck.moving_frf(study.offsets, speed, 2 * np.pi * BAND)
