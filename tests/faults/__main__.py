@@ -53,14 +53,14 @@ SHOWN = ("reports/", "commands/", "results/files", "_basics/wording")
 
 # These first where the fault lies in the independent way, and last otherwise.
 REFERENCE = [
-    "tests/reference/test_elements.py",
-    "tests/reference/test_sampled.py",
-    "tests/reference/test_coupled.py",
-    "tests/reference/test_duhamel.py",
-    "tests/reference/test_refusals.py",
-    "tests/reference/test_impulse.py",
-    "tests/reference/test_schemes.py",
-    "tests/reference/test_plate.py",
+    "tests/stepping/test_elements.py",
+    "tests/stepping/test_sampled.py",
+    "tests/stepping/test_coupled.py",
+    "tests/stepping/test_duhamel.py",
+    "tests/stepping/test_refusals.py",
+    "tests/stepping/test_impulse.py",
+    "tests/stepping/test_schemes.py",
+    "tests/stepping/test_plate.py",
 ]
 
 # Two processes share the machine, each on one core.
