@@ -24,6 +24,9 @@ from movingfrf.studies.comparison.methods import Case, elements
 from movingfrf.studies.comparison.page import render
 from tests.test_scenario import LOADS, edited
 
+# What takes seconds to compare is compared once.
+pytestmark = pytest.mark.xdist_group("comparison")
+
 # Long enough for the rough road to be met by both axles.
 SHORT = edited(duration=1.6)
 TIMOSHENKO = SHORT.replace("euler_bernoulli_beam", "timoshenko_beam").replace(

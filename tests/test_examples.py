@@ -77,6 +77,7 @@ def test_bridge_example(capsys):
     assert middle.max() == pytest.approx(2.3839e-3, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_wide_road_example():
     """On roads without anything in common the wheels of an axle feel little of each other."""
     wide = loaded("wide_road")
