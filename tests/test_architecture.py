@@ -7,6 +7,7 @@ Late imports are imports, those for annotations too, and so is a module that is 
 from __future__ import annotations
 
 import ast
+import re
 
 import pytest
 
@@ -121,3 +122,35 @@ def test_the_rule_lets_pass_what_it_should(module, line):
 def test_a_circle_is_found():
     assert circle({"a": {"b"}, "b": {"c"}, "c": {"b"}}) == ["b", "c"]
     assert circle({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == []
+
+
+def constants(tree: ast.Module) -> list[str]:
+    """Names that a module sets at its level and that are written as constants are, each of a tuple."""
+    found = []
+    for node in tree.body:
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        names = [name.id for target in targets if target for name in ast.walk(target) if isinstance(name, ast.Name)]
+        found += [name for name in names if re.fullmatch(r"_?[A-Z][A-Z0-9_]+", name)]
+    return found
+
+
+def test_constants_can_be_overseen():
+    """Numbers that tune an algorithm are fields of one frozen value beside it, not names of their own."""
+    counted = {module: constants(tree) for module, tree in TREES.items()}
+    assert 50 < sum(map(len, counted.values())) <= 200
+
+
+def test_files_can_be_overseen():
+    root = SOURCE.parents[1]
+    long = {
+        str(path.relative_to(root)): length
+        for folder in (SOURCE, root / "tests", root / "benchmarks", root / "docs")
+        for path in folder.rglob("*.py")
+        if (length := len(path.read_text(encoding="utf-8").splitlines())) > 600
+    }
+    assert long == {}
+
+
+def test_constants_are_counted_one_by_one():
+    text = "A_B, C2 = 1, 2\n_DE: int = 3\nPlain = 4\nlower = 5\nE_ = F_ = 6\nX[0] = 1\ndef f():\n    G_ = 1\n"
+    assert constants(ast.parse(text)) == ["A_B", "C2", "_DE", "E_", "F_"]
