@@ -21,7 +21,9 @@ FAULTS = [
         "int(share * self.truncation * self",
         "int(share * self.truncation / 6.283 * self",
     ),
-    Fault("truncation that cuts sharply", "response/line.py", "stiffening: float = 0.05", "stiffening: float = 1e-6"),
+    Fault(
+        "truncation that cuts sharply", "response/line.py", "stiffening: float = 0.05", "stiffening: float = 1e-6"
+    ),
     Fault(
         "road that does not stiffen",
         "response/solve.py",

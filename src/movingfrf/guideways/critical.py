@@ -19,12 +19,12 @@ class CriticalSearch:
     deflection among speeds on a coarse basin, then between two of them on a fine one.
     """
 
-    per_decade: int = 20  # wavenumbers looked at, over six decades [@]
-    points: int = 33  # wavenumbers of a bracket: each refinement shrinks it to a sixteenth [@]
-    refinements: int = 6  # of the bracket [@]
-    speeds: int = 64  # up to the limit [@]
-    coarse: int = 121  # points of the deflection basin at each of them [@]
-    fine: int = 1201  # points of the basin on which the speed is refined [@]
+    per_decade: int = 20  # wavenumbers looked at, over six decades [5 to 200]
+    points: int = 33  # wavenumbers of a bracket: each refinement shrinks it to a sixteenth [17 to 129]
+    refinements: int = 6  # of the bracket [4 to 12]
+    speeds: int = 64  # up to the limit [16 to 256]
+    coarse: int = 121  # points of the deflection basin at each of them [100 to 1000]
+    fine: int = 1201  # points of the basin on which the speed is refined [600 to 5000]
 
 
 SEARCH = CriticalSearch()

@@ -15,10 +15,14 @@ from movingfrf._basics.checks import checking
 class ImpulseRecord:
     """What tunes how a recorded impulse response is read; in brackets, between what each number is safe."""
 
-    same_speed: float = 1e-9  # share, of a speed of 1 m/s at least, by which two speeds that are one may differ [@]
-    same_place: float = 1e-6  # distance by which two offsets that are one may differ [m; @]
-    block: int = 256  # samples that share one exponential factor in the transform [@]
-    together: int = 256  # frequencies transformed at a time: their factors stay within the processor's cache [@]
+    # Two speeds that differ by less than this share, of 1 m/s at least, are one.
+    same_speed: float = 1e-9  # [1e-12 to 1e-6]
+    # Two offsets that differ by less are one; those of a vehicle are rounded to the nanometre.
+    same_place: float = 1e-6  # [m; 1e-8 to 1e-4]
+    # Samples that share one exponential factor in the transform.
+    block: int = 256  # [16 to 1024: time and memory only]
+    # Frequencies transformed at a time: their factors stay within the processor's cache.
+    together: int = 256  # [16 to 4096: time and memory only]
 
 
 RECORD = ImpulseRecord()

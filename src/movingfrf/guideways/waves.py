@@ -28,20 +28,21 @@ class RootSearch:
 
     # Below this speed the moving frame differs from the fixed one by rounding errors, while the roots that run away
     # to infinity as v → 0 (one per κⁿ that v alone keeps alive) begin to cost digits.
-    at_rest: float = 1e-13  # [m/s; @]
+    at_rest: float = 1e-13  # [m/s; 1e-15 to 1e-12]
     # A root within so many rounding errors of the real axis is taken as real and classified by the direction in
     # which damping would push it.
-    real_within: float = 1e6  # [@]
+    real_within: float = 1e6  # [1e2 to 1e8]
     # Two real roots within so many rounding errors of each other pinch the contour between them: the response is
     # infinite.
-    merged_within: float = 1e4  # [@]
-    # A root whose imaginary part is more than this share of its magnitude needs no such care.
-    clearly_off: float = 1e-3  # [@]
+    merged_within: float = 1e4  # [1e2 to 1e6]
+    # A root whose imaginary part is more than this share of its magnitude needs no such care: not even a fourfold
+    # root is uncertain by as much as the fourth root of the rounding error, 1.2e-4.
+    clearly_off: float = 1e-3  # [2e-4 to 1]
     # Newton steps on a root: the last one moves it by less than this share, and squares the error.
-    most_steps: int = 4  # [@]
-    converged: float = 1e-9  # [@]
+    most_steps: int = 4  # [2 to 20]
+    converged: float = 1e-9  # [1e-16 to 1e-8]
     # Roots of two kinds that differ by this factor are computed apart, to within about its inverse.
-    far: float = 1e4  # [@]
+    far: float = 1e4  # [1e2 to 1e6]
 
 
 ROOTS = RootSearch()

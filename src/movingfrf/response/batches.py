@@ -18,9 +18,9 @@ class Batch:
     In brackets, between what each number is safe; they cost time and memory only.
     """
 
-    most: int = 4096  # frequencies [@]
-    entries: int = 2**18  # of the matrices of all of them: of many contacts, fewer frequencies [@]
-    fewest: int = 16  # frequencies, of however many contacts [@]
+    most: int = 4096  # frequencies [256 to 65 536]
+    entries: int = 2**18  # of the matrices of all of them: of many contacts, fewer frequencies [2**14 to 2**22]
+    fewest: int = 16  # frequencies, of however many contacts [1 to 256]
 
 
 BATCH = Batch()

@@ -16,24 +16,24 @@ from movingfrf._basics.smooth import smooth_step
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transform:
-    """What tunes the transform between time and complex frequency; in brackets, between what each number is safe."""
+    """What tunes the transform of records to complex frequency; in brackets, between what each number is safe."""
 
     # What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the
     # padded record grow by its inverse, which is why it is not smaller.
-    wrap_around: float = 3e-5  # [@]
-    # Share of the padding within which the level of a record fades out after its end; the rest of the padding is for
-    # the response to die away.
-    level_fades: float = 0.25  # [@]
+    wrap_around: float = 3e-5  # [1e-6 to 1e-4]
+    # Share of the padding within which the level of a record fades out after its end; the rest of the padding is
+    # for the response to die away.
+    level_fades: float = 0.25  # [0.15 to 0.4]
     # Slope and curvature fade earlier: after so many times the ratio of the record's typical slope to its typical
     # curvature, at most within this share of the padding. So many samples before the end tell what is typical.
-    slope_fades: float = 0.05  # [@]
-    times_its_scale: float = 12.0  # [@]
-    lately: int = 4096  # [@]
-    # Share of the truncation over which the guideway stiffens beyond it. What a sharp cut discards would ring on and
-    # on, and the window raises what comes late.
-    stiffening: float = 0.05  # [@]
+    slope_fades: float = 0.05  # [0.02 to 0.1]
+    times_its_scale: float = 12.0  # [6 to 24]
+    lately: int = 4096  # [256 to 65 536]
+    # Share of the truncation over which the guideway stiffens beyond it. What a sharp cut discards would ring on
+    # and on, and the window raises what comes late.
+    stiffening: float = 0.05  # [a convention that users are told]
     # Channels transformed at a time: as many as a processor's vector holds numbers.
-    together: int = 4  # [@]
+    together: int = 4  # [1 to 64: time only]
     # Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
     # computation, measured on an hour of travel.
     bytes_per_sample: int = 60

@@ -18,13 +18,14 @@ class PanelRule:
     """What tunes the integrals over densities; in brackets, between what each number is safe."""
 
     # Gauss points of a panel. Its integrals are exact for polynomials of degree 23.
-    points: int = 12  # [@]
+    points: int = 12  # [8 to 20]
     # What the last two Legendre coefficients of a density may amount to over all panels, relative to its integral.
     # The integrals themselves are far more accurate, 1e-9 and better: the rule is exact for twice the degree.
-    unresolved: float = 1e-3  # [@]
-    # A panel this narrow, relative to its frequency, cannot be halved any further; so many panels are beyond reason.
-    narrowest: float = 1e-10  # [@]
-    most_panels: int = 50_000  # [@]
+    unresolved: float = 1e-3  # [1e-5 to 1e-2]
+    # A panel this narrow, relative to its frequency, cannot be halved any further; so many panels are beyond
+    # reason.
+    narrowest: float = 1e-10  # [1e-13 to 1e-9]
+    most_panels: int = 50_000  # [a convention]
 
 
 PANELS = PanelRule()

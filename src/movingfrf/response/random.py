@@ -47,9 +47,13 @@ if TYPE_CHECKING:
 class Thresholds:
     """What counts as rounding, as undamped and as too much; in brackets, between what each number is safe."""
 
-    rounding: float = 1e-20  # a variance that is this small a share of a comparable one is rounding [@]
-    semidefinite: float = 1e-9  # negative eigenvalues of a matrix of coherences up to this size are rounding [@]
-    undamped: float = 1e-9  # damping ratio below which a resonance is too sharp to be resolved [@]
+    # A variance that is this small a share of a comparable one is rounding.
+    rounding: float = 1e-20  # [1e-25 to 1e-18]
+    # Negative eigenvalues of a matrix of coherences up to this size are rounding, and so is what it lacks of being
+    # symmetric and 1 on its diagonal.
+    semidefinite: float = 1e-9  # [1e-12 to 1e-7]
+    # Damping ratio below which a resonance is too sharp to be resolved; it gives the reason of a refusal only.
+    undamped: float = 1e-9  # [1e-12 to 1e-7]
     # Share of the variance of a contact force that may lie in the highest tenth of the band.
     at_the_end: float = 0.01  # [a convention]
 

@@ -29,12 +29,11 @@ if TYPE_CHECKING:
 class Settling:
     """What tunes the padding in which the vehicle settles; in brackets, between what each number is safe."""
 
-    decayed: float = (
-        3e-2  # to what the vehicle's slowest vibration should have decayed at the end of the padding [@]
-    )
+    # To what the vehicle's slowest vibration should have decayed at the end of the padding.
+    decayed: float = 3e-2  # [1e-3 to 3e-2]
     # The padding for it is at most so many times the duration, or so many steps.
-    durations: float = 4.0  # [@]
-    steps: int = 2**16  # [@]
+    durations: float = 4.0  # [2 to 16]
+    steps: int = 2**16  # [2**14 to 2**18]
 
 
 SETTLING = Settling()

@@ -18,27 +18,28 @@ class Contour:
     """What tunes the path along the axis and the count of turns; in brackets, between what each number is safe."""
 
     # The path runs this far below the real axis, relative to the frequency: a growth per radian too slow to see.
-    below_axis: float = 1e-6  # [@]
+    below_axis: float = 1e-6  # [1e-8 to 1e-5]
     # Points of the path per decade, and around each pole of the vehicle: at distances that double from half of the
     # pole's own width up to `apart`, relative to its frequency. Every second point is the middle of an interval.
-    per_decade: int = 16  # [@]
-    apart: float = 0.3  # [@]
-    # A change from one end of an interval to its middle, relative to the value and contact by contact, that needs no
-    # closer look; how often an interval may be halved, and how many there may be at a time.
-    largest_change: float = 0.9  # [@]
-    halvings: int = 24  # [@]
-    most_intervals: int = 20_000  # [@]
+    per_decade: int = 16  # [8 to 64]
+    apart: float = 0.3  # [0.2 to 0.5]
+    # A change from one end of an interval to its middle, relative to the value and contact by contact, that needs
+    # no closer look: below 1 the phase turns by less than a quarter. How often an interval may be halved, and how
+    # many there may be at a time.
+    largest_change: float = 0.9  # [0.5 to 0.95]
+    halvings: int = 24  # [12 to 40]
+    most_intervals: int = 20_000  # [5000 to 200 000]
     # Natural frequencies further apart than this ratio leave no digits to the lower ones.
-    widest: float = 1e-9  # [@]
+    widest: float = 1e-9  # [1e-10 to 1e-8]
     # Frequencies between which a mass that follows the road, without vibrations of its own, is looked at.
-    no_poles: tuple[float, float] = (1.0, 1e3)  # [rad/s; @]
+    no_poles: tuple[float, float] = (1.0, 1e3)  # [rad/s; 0.1 to 10, and 100 to 1000]
     # Poles closer to each other than this share of their width need no points of their own; how many are compared.
-    alike: float = 0.1  # [@]
-    most_alike: int = 8  # [@]
-    # Points of the quarter circle from the end of the path down to the imaginary axis.
-    on_arc: int = 24  # [@]
+    alike: float = 0.1  # [0 to 0.3]
+    most_alike: int = 8  # [1 to 32: time only]
+    # Points of the quarter circle from the end of the path down to the imaginary axis: ends and middles in turn.
+    on_arc: int = 24  # [12 to 96, even]
     # Points with the smallest determinant from which a growing vibration is searched, to name it.
-    searches: int = 12  # [@]
+    searches: int = 12  # [a convention]
 
 
 CONTOUR = Contour()

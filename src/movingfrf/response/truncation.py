@@ -17,11 +17,12 @@ from movingfrf.response.system import Sample, System
 class TruncationSearch:
     """What tunes the search for the truncation; in brackets, between what each number is safe."""
 
-    # The change in any output that a rigid road beyond the truncation may make is 1e-6, relative L2. The spectra are
-    # those of records under an exponential window; undoing it raises what was cut early against what comes late.
-    negligible: float = 3e-8  # [@]
+    # The change in any output that a rigid road beyond the truncation may make is 1e-6, relative L2. The spectra
+    # are those of records under an exponential window; undoing it raises what was cut early against what comes
+    # late.
+    negligible: float = 3e-8  # [1e-9 to 1e-7]
     # Bands, equally wide in the logarithm, within which the system counts as constant.
-    bands: int = 160  # [@]
+    bands: int = 160  # [80 to 640]
 
 
 TRUNCATION = TruncationSearch()

@@ -320,8 +320,8 @@ def _unhinged(layout: _Layout, hinges: Sequence[Hinge]) -> tuple[list[int], Floa
     free = np.zeros((layout.dofs, len(kept)))
     free[kept, np.arange(len(kept))] = 1.0
     if rows:
-        # Hinges that leave less of a motion than this hold a body that others hold already. [@]
-        dependent = 1e-9
+        # Of hinges the determinant is 0 or ±1, but for rounding; at 0 one holds a body that others hold already.
+        dependent = 1e-9  # [1e-12 to 0.5]
         constraint = np.array(rows)
         bound = constraint[:, given_up]
         if len(set(given_up)) < len(given_up) or np.abs(np.linalg.det(bound)) < dependent:

@@ -31,9 +31,9 @@ class Solution:
 
     # Above this condition number of the modal matrix (a defective or nearly defective mode) the modes no longer
     # carry the digits and each frequency is solved directly.
-    worst_condition: float = 1e6  # [@]
+    worst_condition: float = 1e6  # [1e3 to 1e8]
     # Rigid contacts whose prescribed motions are closer to each other than this prescribe the same one twice.
-    independent: float = 1e-9  # [@]
+    independent: float = 1e-9  # [1e-12 to 1e-6]
 
 
 SOLUTION = Solution()
