@@ -20,7 +20,7 @@ FAULTS = [
         "(by_omega / slope).real",
         "-(by_omega / slope).real",
     ),
-    Fault("undamped limit missing", "guideways/waves.py", "<= REAL_WITHIN * rounding", "< 0.0 * rounding"),
+    Fault("undamped limit missing", "guideways/waves.py", "<= ROOTS.real_within * rounding", "< 0.0 * rounding"),
     Fault("slope sign", "guideways/waves.py", "(1j * kappa) ** derivative", "(-1j * kappa) ** derivative"),
     Fault("decay along the road", "guideways/waves.py", "np.exp(1j * kappa[", "np.exp(-1j * kappa["),
     Fault("sleeper inertia sign", "guideways/foundations.py", "{(0, 2): self.mass}", "{(0, 2): -self.mass}"),

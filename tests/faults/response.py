@@ -21,7 +21,9 @@ FAULTS = [
         "int(share * self.truncation * self",
         "int(share * self.truncation / 6.283 * self",
     ),
-    Fault("truncation that cuts sharply", "response/line.py", "STIFFENING = 0.05", "STIFFENING = 1e-6"),
+    Fault(
+        "truncation that cuts sharply", "response/line.py", "stiffening: float = 0.05", "stiffening: float = 1e-6"
+    ),
     Fault(
         "road that does not stiffen",
         "response/solve.py",
@@ -75,17 +77,17 @@ FAULTS = [
         "self.spectrum.density(n)",
     ),
     Fault("coherence squared", "response/random.py", "vectors * np.sqrt(np.maximum", "vectors * (np.maximum"),
-    Fault("impossible coherence", "response/random.py", "SEMIDEFINITE = 1e-9", "SEMIDEFINITE = 1e9"),
+    Fault("impossible coherence", "response/random.py", "semidefinite: float = 1e-9", "semidefinite: float = 1e9"),
     Fault(
         "random: velocity for acceleration", "response/random.py", "omega[:, None] ** 4 *", "omega[:, None] ** 2 *"
     ),
-    Fault("rounding moves", "response/random.py", "ROUNDING = 1e-20", "ROUNDING = 1e-60"),
+    Fault("rounding moves", "response/random.py", "rounding: float = 1e-20", "rounding: float = 1e-60"),
     Fault(
         "crossings by the fourth moment", "response/random.py", "_rate(second, variance)", "_rate(fourth, second)"
     ),
     Fault("lift-offs too rare", "response/statistics.py", "(crossing) * np.exp(-0.5", "(crossing) * np.exp(-1.0"),
-    Fault("lift-offs unseen", "response/statistics.py", "if often > LIFT_OFFS or part", "if False and part"),
-    Fault("end of the band unseen", "response/random.py", "if share <= AT_THE_END:", "if share >= 0:"),
+    Fault("lift-offs unseen", "response/statistics.py", "if often > most_times or part", "if False and part"),
+    Fault("end of the band unseen", "response/random.py", "if share <= THRESHOLDS.at_the_end:", "if share >= 0:"),
     Fault("weighting of amplitudes", "response/random.py", "lines.frequency)) ** 2", "lines.frequency))"),
     Fault(
         "first level counted too often",
@@ -97,18 +99,18 @@ FAULTS = [
     Fault(
         "path unlike itself",
         "response/random.py",
-        "axis1=1, axis2=2) - 1) > SEMI",
-        "axis1=1, axis2=2) - 1) > 1e9 + SEMI",
+        "axis1=1, axis2=2) - 1) > THRESHOLDS.semi",
+        "axis1=1, axis2=2) - 1) > 1e9 + THRESHOLDS.semi",
     ),
     Fault(
         "lopsided coherence",
         "response/random.py",
-        "shared.swapaxes(1, 2)) > SEMI",
-        "shared.swapaxes(1, 2)) > 9 + SEMI",
+        "shared.swapaxes(1, 2)) > THRESHOLDS.semi",
+        "shared.swapaxes(1, 2)) > 9 + THRESHOLDS.semi",
     ),
-    Fault("damping always blamed", "response/random.py", "NEXT_TO_NONE = 1e-9", "NEXT_TO_NONE = 1e9"),
+    Fault("damping always blamed", "response/random.py", "undamped: float = 1e-9", "undamped: float = 1e9"),
     Fault("threads that wait", "response/solve.py", "with unthreaded(contacts):", "with unthreaded(1):"),
-    Fault("coarse panels", "response/quadrature.py", "UNRESOLVED = 1e-3", "UNRESOLVED = 1e3"),
+    Fault("coarse panels", "response/quadrature.py", "unresolved: float = 1e-3", "unresolved: float = 1e3"),
     Fault("panels that overlap", "response/quadrature.py", "= low[~rough], high", "= low[~rough] - 0.01, high"),
     Fault(
         "road that lifts the vehicle twice",

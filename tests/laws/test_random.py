@@ -18,7 +18,7 @@ import movingfrf as mf
 from movingfrf.metrics.fatigue import METHODS
 from movingfrf.metrics.measures import random_measures
 from movingfrf.response.batches import solve_contacts
-from movingfrf.response.quadrature import resolved
+from movingfrf.response.quadrature import PANELS, resolved
 from movingfrf.response.statistics import peak_factor
 from movingfrf.results.labels import RANDOM_QUANTITIES
 from tests.helpers import DAMPED, QUARTER_CAR, QUARTER_TRUCK, UNDAMPED, VEHICLES
@@ -512,7 +512,7 @@ def test_a_resonance_without_damping_has_no_mean_square():
 @pytest.mark.parametrize(("speed", "band"), [(1e-9, "2e-11 to 5e-09"), (1e8, r"2e\+06 to 5e\+08")])
 def test_rounding_is_not_blamed_on_damping(monkeypatch, speed, band):
     """At speeds at which the band lies nowhere near the vehicle; given up early, since it never ends well."""
-    monkeypatch.setattr("movingfrf.response.quadrature.MOST_PANELS", 500)
+    monkeypatch.setattr("movingfrf.response.quadrature.PANELS", replace(PANELS, most_panels=500))
     with pytest.raises(
         mf.SolveError, match=f"near .* Hz: no vibration of the vehicle is without .* rounding .* is {band} Hz"
     ):

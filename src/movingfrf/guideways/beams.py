@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from movingfrf._basics.checks import checking
-from movingfrf.guideways.waves import ONE, Ratio, polynomial, total
+from movingfrf.guideways.waves import ONE, Ratio, polynomial, table_sum
 
 
 @runtime_checkable
@@ -110,4 +110,4 @@ class TimoshenkoBeam:
             shearing[2, 2] = shear * inertia
         below = polynomial(rotation)
         massive = polynomial({(a, b + 2): self.mass * value for (a, b), value in rotation.items()})
-        return Ratio(total(polynomial(shearing), massive), below)
+        return Ratio(table_sum(polynomial(shearing), massive), below)

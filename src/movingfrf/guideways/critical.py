@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -9,12 +10,24 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf.guideways.waves import Ratio, residue_sum
 
-# Wavenumbers looked at, per decade, over six decades; each refinement shrinks the bracket sixteenfold.
-PER_DECADE, REFINEMENTS, POINTS = 20, 6, 33
 
-# Speeds up to the limit, and points of the deflection basin, among which the greatest deflection is sought first;
-# then the speed is refined on a basin of so many points.
-SPEEDS, COARSE, FINE = 64, 121, 1201
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CriticalSearch:
+    """What tunes the search for the critical speed; in brackets, between what each number is safe.
+
+    The slowest wave is sought among wavenumbers, then in a bracket that shrinks; the speed of the greatest steady
+    deflection among speeds on a coarse basin, then between two of them on a fine one.
+    """
+
+    per_decade: int = 20  # wavenumbers looked at, over six decades [5 to 200]
+    points: int = 33  # wavenumbers of a bracket: each refinement shrinks it to a sixteenth [17 to 129]
+    refinements: int = 6  # of the bracket [4 to 12]
+    speeds: int = 64  # up to the limit [16 to 256]
+    coarse: int = 121  # points of the deflection basin at each of them [100 to 1000]
+    fine: int = 1201  # points of the basin on which the speed is refined [600 to 5000]
+
+
+SEARCH = CriticalSearch()
 
 
 class PhaseVelocity(NamedTuple):
@@ -45,7 +58,7 @@ def first_stationary_velocity(lossless: Ratio) -> PhaseVelocity:
     unbounded = bool(leading[1:].any())
     static = np.flatnonzero(table[:, 0])
     scale = (table[0, 0] / table[static[-1], 0]) ** (0.5 / static[-1])
-    kappa = scale * np.geomspace(1e-3, 1e3, 6 * PER_DECADE + 1)
+    kappa = scale * np.geomspace(1e-3, 1e3, 6 * SEARCH.per_decade + 1)
     branches = _phase_velocities(table, kappa)
     for number, branch in enumerate(branches.T):
         dips = np.flatnonzero((branch[1:-1] < branch[:-2]) & (branch[1:-1] <= branch[2:])) + 1
@@ -79,10 +92,10 @@ def _phase_velocities(table: FloatArray, kappa: FloatArray) -> FloatArray:
 
 def _refined_minimum(table: FloatArray, around: tuple[float, float], number: int) -> float:
     """Minimum of one branch between two wavenumbers."""
-    for _ in range(REFINEMENTS):
-        kappa = np.linspace(*around, POINTS)
+    for _ in range(SEARCH.refinements):
+        kappa = np.linspace(*around, SEARCH.points)
         velocity = _phase_velocities(table, kappa)[:, number]
-        lowest = min(max(int(velocity.argmin()), 1), POINTS - 2)
+        lowest = min(max(int(velocity.argmin()), 1), SEARCH.points - 2)
         around = kappa[lowest - 1], kappa[lowest + 1]
     return float(velocity.min())
 
@@ -116,13 +129,13 @@ def speed_of_greatest_deflection(stiffness: Ratio, limit: float) -> float:
         return -float(middle - (right - left) ** 2 / (8 * (right - 2 * middle + left)))
 
     # Open at the limit, where the deflection of an undamped guideway is infinite.
-    speeds = limit * np.linspace(0.0, 1.0 - 1e-9, SPEEDS)
-    values = np.array([shallowness(speed, COARSE) for speed in speeds])
+    speeds = limit * np.linspace(0.0, 1.0 - 1e-9, SEARCH.speeds)
+    values = np.array([shallowness(speed, SEARCH.coarse) for speed in speeds])
     best = int(values.argmin())
     if best == 0:
         return float("inf")
-    bounds = speeds[best - 1], speeds[min(best + 1, SPEEDS - 1)]
+    bounds = speeds[best - 1], speeds[min(best + 1, SEARCH.speeds - 1)]
     found = minimize_scalar(
-        shallowness, bounds=bounds, args=(FINE,), method="bounded", options={"xatol": 1e-7 * limit}
+        shallowness, bounds=bounds, args=(SEARCH.fine,), method="bounded", options={"xatol": 1e-7 * limit}
     )
     return float(found.x)

@@ -8,7 +8,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from movingfrf._basics.checks import Checks, checking
-from movingfrf.guideways.waves import ONE, Ratio, polynomial, total
+from movingfrf.guideways.waves import ONE, Ratio, polynomial, table_sum
 
 
 @runtime_checkable
@@ -82,7 +82,7 @@ class ShearLayer:
     def foundation_stiffness(self, *, damped: bool = True) -> Ratio:
         """Return k + c p + G_p κ² [N/m²]."""
         shear = polynomial({(2, 0): self.shear_stiffness})
-        return Ratio(total(_spring(self.stiffness, self.damping, damped), shear), ONE)
+        return Ratio(table_sum(_spring(self.stiffness, self.damping, damped), shear), ONE)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

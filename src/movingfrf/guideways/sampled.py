@@ -10,14 +10,22 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
 from movingfrf._basics.checks import checking
 
-# Two speeds or offsets that differ by less than this share, or this many metres, are one.
-SAME_SHARE, SAME_PLACE = 1e-9, 1e-6
 
-# Samples that share one exponential factor in the transform.
-BLOCK = 256
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImpulseRecord:
+    """What tunes how a recorded impulse response is read; in brackets, between what each number is safe."""
 
-# Frequencies transformed at a time: their factors stay within the processor's cache.
-CHUNK = 256
+    # Two speeds that differ by less than this share, of 1 m/s at least, are one.
+    same_speed: float = 1e-9  # [1e-12 to 1e-6]
+    # Two offsets that differ by less are one; those of a vehicle are rounded to the nanometre.
+    same_place: float = 1e-6  # [m; 1e-8 to 1e-4]
+    # Samples that share one exponential factor in the transform.
+    block: int = 256  # [16 to 1024: time and memory only]
+    # Frequencies transformed at a time: their factors stay within the processor's cache.
+    together: int = 256  # [16 to 4096: time and memory only]
+
+
+RECORD = ImpulseRecord()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -120,7 +128,7 @@ class SampledGuideway:
             [np.abs(place[..., None] - recorded) for place, recorded in zip(places, known, strict=False)], axis=0
         )
         nearest = apart.argmin(axis=-1)
-        missing = apart.min(axis=-1) > SAME_PLACE
+        missing = apart.min(axis=-1) > RECORD.same_place
         if missing.any():
             names = ("ahead", "across", "source_across")[:asked]
             recorded = np.stack(known, axis=-1).squeeze(axis=-1 if asked == 1 else ()).tolist()
@@ -144,7 +152,7 @@ class SampledGuideway:
         ValueError
             If it is another one.
         """
-        if not abs(speed - self.speed) <= SAME_SHARE * max(abs(self.speed), 1.0):
+        if not abs(speed - self.speed) <= RECORD.same_speed * max(abs(self.speed), 1.0):
             raise ValueError(
                 f"speed must be {self.speed!r} m/s, at which the impulse response was recorded, got {speed!r} m/s"
             )
@@ -194,8 +202,8 @@ class SampledGuideway:
         frequencies = np.atleast_1d(np.asarray(omega, complex))
         frf = np.zeros((frequencies.size, distinct.size), complex)
         within = np.flatnonzero(np.abs(frequencies.real) <= np.pi / self.time_step)
-        for first in range(0, within.size, CHUNK):
-            some = within[first : first + CHUNK]
+        for first in range(0, within.size, RECORD.together):
+            some = within[first : first + RECORD.together]
             frf[some] = self._transformed(frequencies[some], distinct)
         placed: ComplexArray = np.take(frf, back, axis=1).reshape(frequencies.size, *shape)
         return placed
@@ -204,12 +212,13 @@ class SampledGuideway:
         """Σ g(k Δt) e^{−iω k Δt} Δt, the first sample by half, in blocks of samples that share a factor."""
         samples = self.samples[:, columns].copy()
         samples[0] *= 0.5
-        blocks = -(-len(samples) // BLOCK)
-        padded = np.zeros((blocks * BLOCK, columns.size))
+        size = RECORD.block
+        blocks = -(-len(samples) // size)
+        padded = np.zeros((blocks * size, columns.size))
         padded[: len(samples)] = samples
-        by_block = padded.reshape(blocks, BLOCK, -1).swapaxes(0, 1).reshape(BLOCK, -1)
+        by_block = padded.reshape(blocks, size, -1).swapaxes(0, 1).reshape(size, -1)
         phase = -1j * self.time_step * omega[:, None]
-        within, between = np.exp(phase * np.arange(BLOCK)), np.exp(phase * (BLOCK * np.arange(blocks)))
+        within, between = np.exp(phase * np.arange(size)), np.exp(phase * (size * np.arange(blocks)))
         # Two real products take half the time of one with a real factor made complex.
         inner: ComplexArray = np.empty((omega.size, by_block.shape[1]), complex)
         inner.real, inner.imag = within.real @ by_block, within.imag @ by_block

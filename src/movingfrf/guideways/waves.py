@@ -18,24 +18,34 @@ import numpy as np
 from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray
 from movingfrf._basics.checks import SolveError
 
-# Below this speed [m/s] the moving frame differs from the fixed one by rounding errors, while the roots that
-# run away to infinity as v → 0 (one per κⁿ that v alone keeps alive) begin to cost digits.
-AT_REST = 1e-13
 
-# A root within so many rounding errors of the real axis is taken as real and classified by the direction in which
-# damping would push it. Two real roots within so many of each other pinch the contour between them: the response
-# is infinite.
-ROUNDING = np.finfo(float).eps
-REAL_WITHIN, MERGED_WITHIN = 1e6, 1e4
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RootSearch:
+    """What tunes the search for the waves, and for the side of the real axis on which each of them counts.
 
-# A root whose imaginary part is more than this share of its magnitude needs no such care.
-CLEARLY_OFF = 1e-3
+    In brackets, between what each number is safe.
+    """
 
-# Newton steps on a root: the last one moves it by less than this, and squares the error.
-MOST_STEPS, CONVERGED = 4, 1e-9
+    # Below this speed the moving frame differs from the fixed one by rounding errors, while the roots that run away
+    # to infinity as v → 0 (one per κⁿ that v alone keeps alive) begin to cost digits.
+    at_rest: float = 1e-13  # [m/s; 1e-15 to 1e-12]
+    # A root within so many rounding errors of the real axis is taken as real and classified by the direction in
+    # which damping would push it.
+    real_within: float = 1e6  # [1e2 to 1e8]
+    # Two real roots within so many rounding errors of each other pinch the contour between them: the response is
+    # infinite.
+    merged_within: float = 1e4  # [1e2 to 1e6]
+    # A root whose imaginary part is more than this share of its magnitude needs no such care: not even a fourfold
+    # root is uncertain by as much as the fourth root of the rounding error, 1.2e-4.
+    clearly_off: float = 1e-3  # [2e-4 to 1]
+    # Newton steps on a root: the last one moves it by less than this share, and squares the error.
+    most_steps: int = 4  # [2 to 20]
+    converged: float = 1e-9  # [1e-16 to 1e-8]
+    # Roots of two kinds that differ by this factor are computed apart, to within about its inverse.
+    far: float = 1e4  # [1e2 to 1e6]
 
-# Roots of two kinds that differ by this factor are computed apart, to within about its inverse.
-FAR = 1e4
+
+ROOTS = RootSearch()
 
 
 def polynomial(terms: dict[tuple[int, int], float]) -> FloatArray:
@@ -52,7 +62,7 @@ def polynomial(terms: dict[tuple[int, int], float]) -> FloatArray:
     return table
 
 
-def product(first: FloatArray, second: FloatArray) -> FloatArray:
+def table_product(first: FloatArray, second: FloatArray) -> FloatArray:
     """Table of the product of two polynomials."""
     if second.size == 1:
         return first * second.item()
@@ -62,7 +72,7 @@ def product(first: FloatArray, second: FloatArray) -> FloatArray:
     return table
 
 
-def total(first: FloatArray, second: FloatArray) -> FloatArray:
+def table_sum(first: FloatArray, second: FloatArray) -> FloatArray:
     """Table of the sum of two polynomials."""
     table = np.zeros(np.maximum(first.shape, second.shape))
     for part in (first, second):
@@ -85,13 +95,13 @@ class Ratio:
 
     def __add__(self, other: Ratio) -> Ratio:
         """Side by side: the same deflection, forces add."""
-        above = total(product(self.above, other.below), product(other.above, self.below))
-        return Ratio(above, product(self.below, other.below))
+        above = table_sum(table_product(self.above, other.below), table_product(other.above, self.below))
+        return Ratio(above, table_product(self.below, other.below))
 
     def in_series(self, other: Ratio) -> Ratio:
         """One on top of the other: the same force, deflections add; ab/(a + b)."""
-        below = total(product(self.above, other.below), product(other.above, self.below))
-        return Ratio(product(self.above, other.above), below)
+        below = table_sum(table_product(self.above, other.below), table_product(other.above, self.below))
+        return Ratio(table_product(self.above, other.above), below)
 
 
 def in_moving_frame(table: NumberArray, speed: float, omega: ComplexArray) -> ComplexArray:
@@ -112,7 +122,7 @@ def in_moving_frame(table: NumberArray, speed: float, omega: ComplexArray) -> Co
         Coefficients, ascending, without leading powers that vanish. Here, and in all that follows, frequency is
         the last axis: it is long, the others are short.
     """
-    polynomials: ComplexArray = _expanded(table, 1j * omega, -1j * speed if abs(speed) > AT_REST else 0.0)
+    polynomials: ComplexArray = _expanded(table, 1j * omega, -1j * speed if abs(speed) > ROOTS.at_rest else 0.0)
     return polynomials
 
 
@@ -163,13 +173,13 @@ def wavenumbers(coefficients: ComplexArray) -> ComplexArray:
     """
     roots = _first_guess(coefficients)
     slope = slopes(coefficients)
-    for _ in range(MOST_STEPS):
+    for _ in range(ROOTS.most_steps):
         with np.errstate(all="ignore"):
             step = evaluated(coefficients, roots) / evaluated(slope, roots)
             # At a multiple root the slope vanishes and so does the need to move.
             step = np.where(np.isfinite(step), step, 0.0)
         roots -= step
-        if (_squared(step) <= CONVERGED**2 * _squared(roots)).all():
+        if (_squared(step) <= ROOTS.converged**2 * _squared(roots)).all():
             break
     return roots
 
@@ -198,7 +208,7 @@ def _far_apart(sizes: FloatArray, small: int) -> bool:
         return False
     largest = 2 * ((sizes[:small] / sizes[small]) ** (1 / (small - below))).max(axis=0)
     smallest = 0.5 / ((sizes[small + 1 :] / sizes[small]) ** (1 / (above - small))).max(axis=0)
-    return bool((smallest > FAR * largest).all())
+    return bool((smallest > ROOTS.far * largest).all())
 
 
 def _quartic(p: ComplexArray, q: ComplexArray, r: ComplexArray) -> ComplexArray:
@@ -304,14 +314,14 @@ def _sides(
     side = kappa.imag
     infinite: BoolArray = np.zeros(omega.size, bool)
     # Not even a fourfold root is uncertain by as much as this, so most guideways need no closer look.
-    if (side * side > CLEARLY_OFF**2 * _squared(kappa)).all():
+    if (side * side > ROOTS.clearly_off**2 * _squared(kappa)).all():
         return side, infinite
-    rounding = ROUNDING * evaluated(_expanded(np.abs(table), np.abs(omega), abs(speed)), np.abs(kappa))
-    doubtful = np.abs(side) * np.abs(slope) <= REAL_WITHIN * rounding
+    rounding = np.finfo(float).eps * evaluated(_expanded(np.abs(table), np.abs(omega), abs(speed)), np.abs(kappa))
+    doubtful = np.abs(side) * np.abs(slope) <= ROOTS.real_within * rounding
     # Im κ(ω − i0⁺) has the sign of Re(∂D/∂ω ÷ ∂D/∂κ).
     by_omega = evaluated(in_moving_frame(_by_omega(table), speed, omega), kappa)
     bend = evaluated(slopes(slopes(in_moving_frame(table, speed, omega))), kappa)
-    infinite |= (doubtful & (_squared(slope) <= MERGED_WITHIN * rounding * np.abs(bend))).any(axis=0)
+    infinite |= (doubtful & (_squared(slope) <= ROOTS.merged_within * rounding * np.abs(bend))).any(axis=0)
     return np.where(doubtful, (by_omega / slope).real, side), infinite
 
 

@@ -3,19 +3,32 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from movingfrf._basics.arrays import ComplexArray
 
-# Frequencies solved at a time: their arrays stay within the processor's cache. Of many contacts, fewer.
-CHUNK, ENTRIES = 4096, 2**18
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Batch:
+    """How many frequencies are solved at a time, so that their arrays stay within the processor's cache.
+
+    In brackets, between what each number is safe; they cost time and memory only.
+    """
+
+    most: int = 4096  # frequencies [256 to 65 536]
+    entries: int = 2**18  # of the matrices of all of them: of many contacts, fewer frequencies [2**14 to 2**22]
+    fewest: int = 16  # frequencies, of however many contacts [1 to 256]
+
+
+BATCH = Batch()
 
 
 def chunk_for(contacts: int) -> int:
     """Frequencies to solve at a time with so many contacts."""
-    return max(min(CHUNK, ENTRIES // contacts**2), 16)
+    return max(min(BATCH.most, BATCH.entries // contacts**2), BATCH.fewest)
 
 
 def unthreaded(contacts: int) -> AbstractContextManager[object]:
@@ -41,8 +54,8 @@ def solve_contacts(frf: ComplexArray, stiffness: ComplexArray, gap: ComplexArray
         Contact forces F [N].
     """
     count = frf.shape[1]
-    system = np.eye(count) + product(stiffness, frf)
-    right = product(stiffness, gap)
+    system = np.eye(count) + matrix_product(stiffness, frf)
+    right = matrix_product(stiffness, gap)
     if count == 1:
         return right / system
     if count == 2:  # Cramer's rule: several times faster than LAPACK on batches of this size
@@ -56,7 +69,7 @@ def solve_contacts(frf: ComplexArray, stiffness: ComplexArray, gap: ComplexArray
     return np.linalg.solve(system, right)
 
 
-def product(left: ComplexArray, right: ComplexArray) -> ComplexArray:
+def matrix_product(left: ComplexArray, right: ComplexArray) -> ComplexArray:
     """Matrix product for each frequency, shapes (frequency, i, j) and (frequency, j, k)."""
     if left.shape[1] > 2:
         return left @ right

@@ -13,32 +13,36 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require
 from movingfrf._basics.checks import checking
 from movingfrf._basics.smooth import smooth_step
 
-# What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the
-# padded record grow by its inverse, which is why it is not smaller.
-WRAP_AROUND = 3e-5
 
-# Share of the padding within which the level of a record fades out after its end; the rest of the padding is for
-# the response to die away. Slope and curvature fade earlier: after so many times the ratio of the record's typical
-# slope to its typical curvature, at most the second share.
-SETTLE, TIMES_ITS_SCALE, FADE = 0.25, 12.0, 0.05
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Transform:
+    """What tunes the transform of records to complex frequency; in brackets, between what each number is safe."""
 
-# Share of the truncation over which the guideway stiffens beyond it. What a sharp cut discards would ring on and
-# on, and the window raises what comes late.
-STIFFENING = 0.05
+    # What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the
+    # padded record grow by its inverse, which is why it is not smaller.
+    wrap_around: float = 3e-5  # [1e-6 to 1e-4]
+    # Share of the padding within which the level of a record fades out after its end; the rest of the padding is
+    # for the response to die away.
+    level_fades: float = 0.25  # [0.15 to 0.4]
+    # Slope and curvature fade earlier: after so many times the ratio of the record's typical slope to its typical
+    # curvature, at most within this share of the padding. So many samples before the end tell what is typical.
+    slope_fades: float = 0.05  # [0.02 to 0.1]
+    times_its_scale: float = 12.0  # [6 to 24]
+    lately: int = 4096  # [256 to 65 536]
+    # Share of the truncation over which the guideway stiffens beyond it. What a sharp cut discards would ring on
+    # and on, and the window raises what comes late.
+    stiffening: float = 0.05  # [a convention that users are told]
+    # Channels transformed at a time: as many as a processor's vector holds numbers.
+    together: int = 4  # [1 to 64: time only]
+    # Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
+    # computation, measured on an hour of travel.
+    bytes_per_sample: int = 60
 
-# Samples before the end of a record that tell how fast it varies.
-LATELY = 4096
 
-# Channels transformed at a time: as many as a processor's vector holds numbers.
-TOGETHER = 4
+TRANSFORM = Transform()
 
 # One-sided differences of fourth and third order for slope and curvature at the last sample (latest first).
-SLOPE = np.array([25 / 12, -4.0, 3.0, -4 / 3, 1 / 4])
-CURVATURE = np.array([35 / 12, -26 / 3, 19 / 2, -14 / 3, 11 / 12])
-
-# Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
-# computation, measured on an hour of travel.
-BYTES_PER_SAMPLE = 60
+DIFFERENCES = np.array([[25 / 12, -4.0, 3.0, -4 / 3, 1 / 4], [35 / 12, -26 / 3, 19 / 2, -14 / 3, 11 / 12]])
 
 
 class Histories(NamedTuple):
@@ -53,7 +57,7 @@ class SpectralGrid:
     """A record in time and the complex frequencies that stand for it.
 
     X(ω) = ∫ x(t) e^{−iωt} dt, evaluated along ω − iη (exponential window, Kausel and Roësset 1992): the
-    periodic repetition that a discrete transform implies is damped to `WRAP_AROUND` after one period.
+    periodic repetition that a discrete transform implies is damped to `TRANSFORM.wrap_around` after one period.
 
     Parameters
     ----------
@@ -92,13 +96,13 @@ class SpectralGrid:
     @property
     def padded(self) -> int:
         """Length of the transform: the record, time to settle, and what makes the length factorise."""
-        padding = max(self.samples // 8, int(self.settling / (1 - SETTLE) / self.time_step), 16)
+        padding = max(self.samples // 8, int(self.settling / (1 - TRANSFORM.level_fades) / self.time_step), 16)
         return int(scipy.fft.next_fast_len(self.samples + padding, real=True))
 
     @property
     def decay(self) -> float:
         """Distance η of the line of evaluation from the real axis [rad/s]."""
-        return float(-np.log(WRAP_AROUND)) / (self.padded * self.time_step)
+        return float(-np.log(TRANSFORM.wrap_around)) / (self.padded * self.time_step)
 
     @property
     def size(self) -> int:
@@ -113,15 +117,15 @@ class SpectralGrid:
     @property
     def kept(self) -> int:
         """Number of frequencies, from zero, at which the guideway is solved for: those at which it is not rigid."""
-        return self._below(1.0 + STIFFENING)
+        return self._below(1.0 + TRANSFORM.stiffening)
 
     def compliance(self, numbers: slice) -> FloatArray:
         """Share of its compliance that the guideway has at some frequencies: 1 up to the truncation, then less."""
         at = np.arange(*numbers.indices(self.size))
         if self.truncation is None or not self.truncation:
             return np.ones(at.size)
-        frequency = at / (self.padded * self.time_step)
-        return smooth_step((1.0 + STIFFENING - frequency / self.truncation) / STIFFENING)
+        frequency, width = at / (self.padded * self.time_step), TRANSFORM.stiffening
+        return smooth_step((1.0 + width - frequency / self.truncation) / width)
 
     def _below(self, share: float) -> int:
         """Count frequencies from zero to so many times the truncation."""
@@ -160,8 +164,9 @@ class SpectralGrid:
         """
         spectra = np.empty((histories.shape[1], self.size), complex)
         window = self.time_step * np.exp(-self.decay * self.time_step * np.arange(self.padded))
-        for first in range(0, len(spectra), TOGETHER):
-            block = histories.T[first : first + TOGETHER]
+        together = TRANSFORM.together
+        for first in range(0, len(spectra), together):
+            block = histories.T[first : first + together]
             padded = np.empty((len(block), self.padded))
             padded[:, : self.samples] = block
             for row, history in zip(padded, block, strict=True):
@@ -169,12 +174,12 @@ class SpectralGrid:
             # A jump at t = 0 is centred there: half of its first sample lies before it.
             padded[:, 0] *= 0.5
             padded *= window
-            np.fft.rfft(padded, out=spectra[first : first + TOGETHER])
+            np.fft.rfft(padded, out=spectra[first : first + together])
         return spectra.T
 
     def scratch(self) -> NDArray[np.float64]:
         """Memory for `to_histories` to work in: fresh pages cost more than a transform."""
-        return np.empty((TOGETHER, self.padded))
+        return np.empty((TRANSFORM.together, self.padded))
 
     def to_histories(
         self, spectra: ComplexArray, *, derivative: int = 0, scratch: NDArray[np.float64] | None = None
@@ -202,8 +207,8 @@ class SpectralGrid:
         memory = self.scratch() if scratch is None else scratch
         factor = (1j * self.omega(slice(len(spectra)))) ** derivative if derivative else None
         growth = np.exp(self.decay * self.time_step * np.arange(self.samples)) / self.time_step
-        for first in range(0, len(histories), TOGETHER):
-            some = slice(first, first + TOGETHER)
+        for first in range(0, len(histories), TRANSFORM.together):
+            some = slice(first, first + TRANSFORM.together)
             block = spectra.T[some] if factor is None else spectra.T[some] * factor
             periodic = np.fft.irfft(block, self.padded, out=memory[: len(block)])
             np.multiply(periodic[:, : self.samples], growth, out=histories[some])
@@ -215,23 +220,24 @@ class SpectralGrid:
         length = self.padded - self.samples
         after = np.zeros(length)
         level = history[-1]
-        settle = max(int(SETTLE * length), 1)
+        settle = max(int(TRANSFORM.level_fades * length), 1)
         after[:settle] = level * _fading(settle)
         fade = min(self._memory(history), length)
-        if self.samples >= len(SLOPE) and fade > 1:
-            latest = history[: -len(SLOPE) - 1 : -1]
-            slope, curvature = SLOPE @ latest, CURVATURE @ latest
+        taken = DIFFERENCES.shape[1]
+        if self.samples >= taken and fade > 1:
+            latest = history[: -taken - 1 : -1]
+            slope, curvature = (weights @ latest for weights in DIFFERENCES)
             ahead = np.arange(1.0, fade + 1)
             after[:fade] += (slope * ahead + 0.5 * curvature * ahead**2) * _fading(fade)
         return after
 
     def _memory(self, history: FloatArray) -> int:
         """Count the samples over which slope and curvature fade: enough not to add frequencies."""
-        steps = np.diff(history[-LATELY:])
+        steps = np.diff(history[-TRANSFORM.lately :])
         bends = np.diff(steps)
         bend, step = float(bends @ bends), float(steps @ steps)
-        longest = (self.padded - self.samples) * FADE
-        return int(min(TIMES_ITS_SCALE * np.sqrt(step / bend), longest)) if bend else int(longest)
+        longest = (self.padded - self.samples) * TRANSFORM.slope_fades
+        return int(min(TRANSFORM.times_its_scale * np.sqrt(step / bend), longest)) if bend else int(longest)
 
 
 def _fading(count: int) -> FloatArray:
@@ -257,6 +263,6 @@ def require_record(duration: float, settling: float, time_step: float, channels:
         With what is needed and what is free.
     """
     require_memory(
-        BYTES_PER_SAMPLE * channels * (duration + settling) / time_step,
+        TRANSFORM.bytes_per_sample * channels * (duration + settling) / time_step,
         f"a record of {duration:g} s in steps of {time_step:g} s",
     )

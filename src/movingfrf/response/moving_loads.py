@@ -11,16 +11,12 @@ import movingfrf.results.findings as find
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway
-from movingfrf.response.batches import CHUNK
+from movingfrf.response.batches import BATCH
 from movingfrf.response.line import SpectralGrid, require_record
 from movingfrf.results.labels import LOADED, labelled, provenance
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-# Frequencies beyond a truncation at which the response to prescribed loads is looked at.
-SAMPLES_BEYOND = 256
 
 
 def moving_loads(
@@ -99,15 +95,15 @@ def moving_loads(
     grid = SpectralGrid(samples=len(forces), time_step=time_step, truncation=truncation, settling=settling)
     spectra = grid.to_spectra(forces)
     deflection = np.empty((points.size, grid.kept), complex).T
-    for first in range(0, grid.kept, CHUNK):
-        last = min(first + CHUNK, grid.kept)
+    for first in range(0, grid.kept, BATCH.most):
+        last = min(first + BATCH.most, grid.kept)
         some = slice(first, last)
         frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(some))
         frf = frf * grid.compliance(some)[:, None, None]
         deflection[first:last] = (frf @ spectra[first:last, :, None])[:, :, 0]
         progress("moving FRF", last / grid.kept)
-    # Beyond the truncation every so-many-th frequency tells how much is left out.
-    stride = (grid.size - grid.untouched) // SAMPLES_BEYOND + 1
+    # Beyond the truncation every so-many-th frequency, 256 of them at most, tells how much is left out.
+    stride = (grid.size - grid.untouched) // 256 + 1
     beyond = np.arange(grid.untouched, grid.size, stride)
     frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(beyond))
     left_out = stride * (np.abs((frf @ spectra[beyond][:, :, None])[:, :, 0]) ** 2).sum(axis=0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
@@ -11,15 +12,23 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
 
-# Gauss points of a panel. Its integrals are exact for polynomials of degree 23.
-POINTS = 12
 
-# What the last two Legendre coefficients of a density may amount to over all panels, relative to its integral. The
-# integrals themselves are far more accurate, 1e-9 and better: the rule is exact for twice the degree.
-UNRESOLVED = 1e-3
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanelRule:
+    """What tunes the integrals over densities; in brackets, between what each number is safe."""
 
-# A panel this narrow, relative to its frequency, cannot be halved any further; so many panels are beyond reason.
-NARROWEST, MOST_PANELS = 1e-10, 50_000
+    # Gauss points of a panel. Its integrals are exact for polynomials of degree 23.
+    points: int = 12  # [8 to 20]
+    # What the last two Legendre coefficients of a density may amount to over all panels, relative to its integral.
+    # The integrals themselves are far more accurate, 1e-9 and better: the rule is exact for twice the degree.
+    unresolved: float = 1e-3  # [1e-5 to 1e-2]
+    # A panel this narrow, relative to its frequency, cannot be halved any further; so many panels are beyond
+    # reason.
+    narrowest: float = 1e-10  # [1e-13 to 1e-9]
+    most_panels: int = 50_000  # [a convention]
+
+
+PANELS = PanelRule()
 
 
 class Unresolved(SolveError):
@@ -87,21 +96,21 @@ def resolved(
     at, weight, last = _gauss()
     panels = np.stack([edges[:-1], edges[1:]], axis=1)
     low = high = np.empty(0)
-    values = np.empty((0, POINTS, len(comparable)))
+    values = np.empty((0, PANELS.points, len(comparable)))
     while True:
         low, high = np.concatenate([low, panels[:, 0]]), np.concatenate([high, panels[:, 1]])
         frequency = _inside(panels[:, 0], panels[:, 1], at)
-        values = np.concatenate([values, density(frequency.ravel()).reshape(len(panels), POINTS, -1)])
+        values = np.concatenate([values, density(frequency.ravel()).reshape(len(panels), PANELS.points, -1)])
         if not np.isfinite(values.sum()):
             raise SolveError("a spectral density of the response exceeds the range of floating-point numbers")
         half = 0.5 * (high - low)
         raised = half[:, None] * _inside(low, high, at) ** np.array(powers)[:, None, None]  # (power, panel, point)
         whole = (weight * raised).reshape(len(powers), -1) @ values.reshape(-1, values.shape[2])
         unresolved = sum(np.abs((coefficient * raised).transpose(1, 0, 2) @ values) for coefficient in last)
-        rough = (unresolved > UNRESOLVED * (whole @ comparable.T) / len(low)).any(axis=(1, 2))
+        rough = (unresolved > PANELS.unresolved * (whole @ comparable.T) / len(low)).any(axis=(1, 2))
         if not rough.any():
             break
-        if (half[rough] < NARROWEST * high[rough]).any() or len(low) > MOST_PANELS:
+        if (half[rough] < PANELS.narrowest * high[rough]).any() or len(low) > PANELS.most_panels:
             raise Unresolved(float(low[rough][half[rough].argmin()]))
         middle = low[rough] + half[rough]
         panels = np.concatenate([np.stack([low[rough], middle], axis=1), np.stack([middle, high[rough]], axis=1)])
@@ -120,8 +129,9 @@ def _inside(low: FloatArray, high: FloatArray, at: FloatArray) -> FloatArray:
 @cache
 def _gauss() -> tuple[FloatArray, FloatArray, FloatArray]:
     """Points and weights on −1 … 1, and the functionals that give what the last two coefficients integrate to."""
-    at, weight = np.polynomial.legendre.leggauss(POINTS)
-    degrees = np.arange(POINTS - 2, POINTS)
-    polynomials = np.polynomial.legendre.legvander(at, POINTS - 1)[:, degrees]
+    points = PANELS.points
+    at, weight = np.polynomial.legendre.leggauss(points)
+    degrees = np.arange(points - 2, points)
+    polynomials = np.polynomial.legendre.legvander(at, points - 1)[:, degrees]
     # ∫|P_k| is below 2; a coefficient is (2k + 1)/2 ∫ P_k S.
     return at, weight, (2 * degrees + 1)[:, None] * polynomials.T * weight

@@ -43,20 +43,25 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# A variance that is this small a share of a comparable one is rounding.
-ROUNDING = 1e-20
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Thresholds:
+    """What counts as rounding, as undamped and as too much; in brackets, between what each number is safe."""
 
-# Negative eigenvalues of a matrix of coherences up to this size are rounding.
-SEMIDEFINITE = 1e-9
+    # A variance that is this small a share of a comparable one is rounding.
+    rounding: float = 1e-20  # [1e-25 to 1e-18]
+    # Negative eigenvalues of a matrix of coherences up to this size are rounding, and so is what it lacks of being
+    # symmetric and 1 on its diagonal.
+    semidefinite: float = 1e-9  # [1e-12 to 1e-7]
+    # Damping ratio below which a resonance is too sharp to be resolved; it gives the reason of a refusal only.
+    undamped: float = 1e-9  # [1e-12 to 1e-7]
+    # Share of the variance of a contact force that may lie in the highest tenth of the band.
+    at_the_end: float = 0.01  # [a convention]
 
-# Damping ratio below which a resonance is too sharp to be resolved.
-NEXT_TO_NONE = 1e-9
+
+THRESHOLDS = Thresholds()
 
 # Powers of the frequency whose integrals the statistics need.
 POWERS = (0, 2, 4)
-
-# Share of the variance of a contact force that may lie in the highest tenth of the band.
-AT_THE_END = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -91,7 +96,7 @@ class _Road:
         else:
             shared = _matrices(self.coherence, spatial_frequency, across)
         values, vectors = np.linalg.eigh(shared)
-        if values.min() < -SEMIDEFINITE * len(across):
+        if values.min() < -THRESHOLDS.semidefinite * len(across):
             n = spatial_frequency[values.min(axis=1).argmin()]
             raise ValueError(
                 "coherence must be positive semidefinite over the paths of the vehicle, but at "
@@ -282,9 +287,9 @@ def _matrices(coherence: Coherence, spatial_frequency: FloatArray, across: Float
             check.refuse("coherence", f"must return an array (frequency, path, path), {shape}, got {shared.shape}")
         elif shared.dtype.kind not in "iuf" or not np.isfinite(shared).all():
             check.refuse("coherence", "must return real, finite numbers: neither path is ahead of the other")
-        elif (np.abs(np.diagonal(shared, axis1=1, axis2=2) - 1) > SEMIDEFINITE).any():
+        elif (np.abs(np.diagonal(shared, axis1=1, axis2=2) - 1) > THRESHOLDS.semidefinite).any():
             check.refuse("coherence", "must be 1 between a path and itself, no distance apart")
-        elif (np.abs(shared - shared.swapaxes(1, 2)) > SEMIDEFINITE).any():
+        elif (np.abs(shared - shared.swapaxes(1, 2)) > THRESHOLDS.semidefinite).any():
             check.refuse("coherence", "must be the same from left to right as from right to left")
     return shared
 
@@ -317,13 +322,13 @@ def _densities(system: System, road: _Road) -> Callable[[FloatArray], FloatArray
 
 def _resolved(densities: Callable[[FloatArray], FloatArray], vehicle: Vehicle, edges: FloatArray) -> Lines:
     """Frequencies that resolve the densities; where none do, the reason."""
-    comparable = np.eye(_outputs(vehicle)) + ROUNDING * _negligible(vehicle)
+    comparable = np.eye(_outputs(vehicle)) + THRESHOLDS.rounding * _negligible(vehicle)
     try:
         return resolved(densities, edges, powers=POWERS, comparable=comparable)
     except Unresolved as failure:
         reason = (
             "a vibration without damping has no finite root mean square"
-            if vehicle.damping_ratios.min(initial=np.inf) < NEXT_TO_NONE
+            if vehicle.damping_ratios.min(initial=np.inf) < THRESHOLDS.undamped
             else "no vibration of the vehicle is without damping, so that it may be rounding that varies there; at "
             f"this speed the band of the road is {edges[0]:.3g} to {edges[-1]:.3g} Hz"
         )
@@ -352,7 +357,7 @@ def _negligible(vehicle: Vehicle) -> FloatArray:
 def _statistics(vehicle: Vehicle, lines: Lines, exposure: float) -> dict[str, FloatArray]:
     """Statistics of every quantity by their names in the schema."""
     variance, second, fourth = (lines.moment(power) for power in POWERS)
-    rounding = variance < ROUNDING * (_negligible(vehicle) @ variance)
+    rounding = variance < THRESHOLDS.rounding * (_negligible(vehicle) @ variance)
     variance, second, fourth = (np.where(rounding, 0.0, moment) for moment in (variance, second, fourth))
     rms, crossing, peaks = np.sqrt(variance), spectral_rate(second, variance), spectral_rate(fourth, second)
     columns = {
@@ -389,7 +394,7 @@ def _at_the_end(lines: Lines, vehicle: Vehicle, spectrum: Spectrum) -> list[Find
     force = lines.density[:, _parts(vehicle)["contact_force"]]
     last = lines.frequency > 0.9 * lines.frequency[-1]
     share = float(((lines.bandwidth * last) @ force / lines.moment(0)[: force.shape[1]]).max())
-    if share <= AT_THE_END:
+    if share <= THRESHOLDS.at_the_end:
         return []
     return [
         Finding(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +14,7 @@ from movingfrf.response.line import SpectralGrid, require_record
 from movingfrf.response.solve import couple, histories
 from movingfrf.response.stability import along_the_axis, require_stable
 from movingfrf.response.system import joined, steady_state
-from movingfrf.response.truncation import bands, first_negligible, influence, middles, truncation_error
+from movingfrf.response.truncation import bands, first_negligible, guideway_influence, middles, truncation_error
 from movingfrf.results.labels import COUPLED, labelled, provenance
 from movingfrf.roughness.excitation import excite
 from movingfrf.roughness.profile import Profile
@@ -25,9 +25,18 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# How far the vehicle's slowest vibration should have decayed at the end of the padding; the padding for it is at
-# most so many times the duration, or so many steps.
-SETTLED, LONGEST_SETTLING, LEAST_SETTLING = 3e-2, 4.0, 2**16
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settling:
+    """What tunes the padding in which the vehicle settles; in brackets, between what each number is safe."""
+
+    # To what the vehicle's slowest vibration should have decayed at the end of the padding.
+    decayed: float = 3e-2  # [1e-3 to 3e-2]
+    # The padding for it is at most so many times the duration, or so many steps.
+    durations: float = 4.0  # [2 to 16]
+    steps: int = 2**16  # [2**14 to 2**18]
+
+
+SETTLING = Settling()
 
 
 def simulate(
@@ -133,7 +142,7 @@ def simulate(
     )
     steady = steady_state(system, at_rest)
     require_stable(system, along_axis)
-    part = influence(system, starts, in_bands, roughness)
+    part = guideway_influence(system, starts, in_bands, roughness)
     if truncation is None:
         kept = first_negligible(part, roughness)
         grid = replace(grid, truncation=max(kept - 1, 0) / (grid.padded * time_step))
@@ -203,8 +212,8 @@ def spectral_grid(journey: Journey, vehicle: Vehicle) -> SpectralGrid:
         If memory would not hold the result.
     """
     slowest = float((-vehicle.poles.real).min(initial=np.inf))
-    longest = max(LONGEST_SETTLING * journey.duration, LEAST_SETTLING * journey.time_step)
-    settling = min(-np.log(SETTLED) / slowest, longest) if slowest > 0 else longest
+    longest = max(SETTLING.durations * journey.duration, SETTLING.steps * journey.time_step)
+    settling = min(-np.log(SETTLING.decayed) / slowest, longest) if slowest > 0 else longest
     channels = len(vehicle.contacts) + len(vehicle.dof_names)
     require_record(journey.duration, settling, journey.time_step, channels)
     return SpectralGrid(

@@ -15,7 +15,7 @@ import numpy as np
 from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.response.batches import chunk_for, product, solve_contacts, unthreaded
+from movingfrf.response.batches import chunk_for, matrix_product, solve_contacts, unthreaded
 from movingfrf.response.line import Histories, SpectralGrid
 from movingfrf.response.system import System
 
@@ -85,7 +85,7 @@ def couple(
                 _, frf, stiffness = system.sample(omega[:kept])
                 frf = frf * grid.compliance(slice(first, first + kept))[:, None, None]
                 forces = solve_contacts(frf, stiffness, roughness[first : first + kept, :, None])
-                deflection[first : first + kept] = product(frf, forces)[:, :, 0]
+                deflection[first : first + kept] = matrix_product(frf, forces)[:, :, 0]
                 displacement[:kept] += deflection[first : first + kept]
             motion[first:last], force[first:last] = system.dynamics.response(omega, displacement)
             progress("coupling", last / grid.size)
@@ -118,7 +118,7 @@ def histories(spectra: CoupledSpectra, grid: SpectralGrid) -> CoupledHistories:
 
     Returns
     -------
-    Response
+    CoupledHistories
         Dynamic force [N], deflection [m], motion [m or rad] and acceleration [m/s² or rad/s²].
     """
     scratch = grid.scratch()
@@ -169,7 +169,7 @@ def responses(system: System, omega: ComplexArray, roughness: ComplexArray) -> R
             some = slice(first, first + step)
             _, frf, stiffness = system.sample(omega[some])
             found.force[some] = solve_contacts(frf, stiffness, roughness[some])
-            found.deflection[some] = product(frf, found.force[some])
+            found.deflection[some] = matrix_product(frf, found.force[some])
             displacement = found.deflection[some] - roughness[some]
             for case in range(cases):
                 found.motion[some, :, case] = system.motion(omega[some], displacement[:, :, case])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
@@ -10,31 +12,37 @@ from movingfrf.response.batches import unthreaded
 from movingfrf.response.system import Sample, System
 from movingfrf.vehicles.vehicle import Vehicle
 
-# The path runs this far below the real axis, relative to the frequency: a growth per radian too slow to see.
-BELOW_AXIS = 1e-6
 
-# Points of the path per decade, and around each pole of the vehicle: at distances that double from half of the
-# pole's own width up to `APART`, relative to its frequency. Every second point is the middle of an interval.
-PER_DECADE, APART = 16, 0.3
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contour:
+    """What tunes the path along the axis and the count of turns; in brackets, between what each number is safe."""
 
-# A change from one end of an interval to its middle, relative to the value and contact by contact, that needs no
-# closer look; how often an interval may be halved, and how many there may be at a time.
-LARGEST_CHANGE, HALVINGS, MOST_INTERVALS = 0.9, 24, 20_000
+    # The path runs this far below the real axis, relative to the frequency: a growth per radian too slow to see.
+    below_axis: float = 1e-6  # [1e-8 to 1e-5]
+    # Points of the path per decade, and around each pole of the vehicle: at distances that double from half of the
+    # pole's own width up to `apart`, relative to its frequency. Every second point is the middle of an interval.
+    per_decade: int = 16  # [8 to 64]
+    apart: float = 0.3  # [0.2 to 0.5]
+    # A change from one end of an interval to its middle, relative to the value and contact by contact, that needs
+    # no closer look: below 1 the phase turns by less than a quarter. How often an interval may be halved, and how
+    # many there may be at a time.
+    largest_change: float = 0.9  # [0.5 to 0.95]
+    halvings: int = 24  # [12 to 40]
+    most_intervals: int = 20_000  # [5000 to 200 000]
+    # Natural frequencies further apart than this ratio leave no digits to the lower ones.
+    widest: float = 1e-9  # [1e-10 to 1e-8]
+    # Frequencies between which a mass that follows the road, without vibrations of its own, is looked at.
+    no_poles: tuple[float, float] = (1.0, 1e3)  # [rad/s; 0.1 to 10, and 100 to 1000]
+    # Poles closer to each other than this share of their width need no points of their own; how many are compared.
+    alike: float = 0.1  # [0 to 0.3]
+    most_alike: int = 8  # [1 to 32: time only]
+    # Points of the quarter circle from the end of the path down to the imaginary axis: ends and middles in turn.
+    on_arc: int = 24  # [12 to 96, even]
+    # Points with the smallest determinant from which a growing vibration is searched, to name it.
+    searches: int = 12  # [a convention]
 
-# Natural frequencies further apart than this ratio leave no digits to the lower ones.
-WIDEST = 1e-9
 
-# Frequencies between which a mass that follows the road, without vibrations of its own, is looked at [rad/s].
-NO_POLES = 1.0, 1e3
-
-# Poles closer to each other than this share of their width need no points of their own; how many are compared.
-ALIKE, MOST_ALIKE = 0.1, 8
-
-# Points of the quarter circle from the end of the path down to the imaginary axis.
-ON_ARC = 24
-
-# Points with the smallest determinant from which a growing vibration is searched, to name it.
-SEARCHES = 12
+CONTOUR = Contour()
 
 
 def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
@@ -64,26 +72,27 @@ def along_the_axis(vehicle: Vehicle, speed: float) -> ComplexArray:
     poles, rigid = vehicle.poles, bool(np.isinf(vehicle.springs).any())
     slowest, fastest = _extent(poles)
     # A wheel that follows the road vibrates on it, faster than anything above it might.
-    fastest = max(fastest, NO_POLES[1]) if rigid else fastest
-    if not slowest > WIDEST * fastest:
+    fastest = max(fastest, CONTOUR.no_poles[1]) if rigid else fastest
+    if not slowest > CONTOUR.widest * fastest:
         raise SolveError(
             f"the vehicle's natural frequencies, from {slowest / (2 * np.pi):.3g} to "
             f"{fastest / (2 * np.pi):.3g} Hz, lie too far apart to be computed together at {speed:g} m/s"
         )
     lowest, highest = 1e-2 * slowest, 1e2 * fastest
-    base = np.geomspace(lowest, highest, int(np.log10(highest / lowest) * PER_DECADE) + 2)
+    base = np.geomspace(lowest, highest, int(np.log10(highest / lowest) * CONTOUR.per_decade) + 2)
     path = np.unique(np.concatenate([[0.0], base, *map(_around, _distinct(poles))]))
     if path.size % 2 == 0:
         path = np.append(path, 2 * highest)
-    along = path * (1 - 1j * BELOW_AXIS)
+    along = path * (1 - 1j * CONTOUR.below_axis)
     if not rigid:
         return along
-    return np.concatenate([along, path[-1] * np.exp(-0.5j * np.pi * np.arange(1, ON_ARC + 1) / ON_ARC)])
+    arc = np.exp(-0.5j * np.pi * np.arange(1, CONTOUR.on_arc + 1) / CONTOUR.on_arc)
+    return np.concatenate([along, path[-1] * arc])
 
 
 def _extent(poles: ComplexArray) -> tuple[float, float]:
     """Magnitude of the slowest and the fastest pole [rad/s]."""
-    return (float(np.abs(poles).min()), float(np.abs(poles).max())) if poles.size else NO_POLES
+    return (float(np.abs(poles).min()), float(np.abs(poles).max())) if poles.size else CONTOUR.no_poles
 
 
 def _distinct(poles: ComplexArray) -> ComplexArray:
@@ -91,7 +100,7 @@ def _distinct(poles: ComplexArray) -> ComplexArray:
     kept: list[complex] = []
     for pole in poles.tolist():
         # Ascending in magnitude, so that those alike are not far behind.
-        alike = (abs(pole - other) < ALIKE * abs(pole.real) for other in kept[-MOST_ALIKE:])
+        alike = (abs(pole - other) < CONTOUR.alike * abs(pole.real) for other in kept[-CONTOUR.most_alike :])
         if not any(alike):
             kept.append(pole)
     return np.array(kept, complex)
@@ -99,8 +108,8 @@ def _distinct(poles: ComplexArray) -> ComplexArray:
 
 def _around(pole: complex) -> FloatArray:
     """Frequencies around a pole, as close as a resonance of its width needs."""
-    width = min(max(abs(pole.real) / abs(pole), BELOW_AXIS), APART)
-    distances = 0.5 * width * 2.0 ** np.arange(int(np.log2(2 * APART / width)) + 1)
+    width = min(max(abs(pole.real) / abs(pole), CONTOUR.below_axis), CONTOUR.apart)
+    distances = 0.5 * width * 2.0 ** np.arange(int(np.log2(2 * CONTOUR.apart / width)) + 1)
     around: FloatArray = abs(pole) * (1 + np.concatenate([-distances, [0.0], distances]))
     return around
 
@@ -127,13 +136,13 @@ def growing_vibrations(system: System, along_axis: Sample) -> int:
     first, middle, last = path[:-1:2], path[1::2], path[2::2]
     at_first, at_middle, at_last = matrices[:-1:2], matrices[1::2], matrices[2::2]
     turned = 0.0
-    for _ in range(HALVINGS):
+    for _ in range(CONTOUR.halvings):
         factors = np.hstack([_factors(at_first, at_middle), _factors(at_middle, at_last)])
-        rough = (np.abs(factors - 1) > LARGEST_CHANGE).any(axis=1)
+        rough = (np.abs(factors - 1) > CONTOUR.largest_change).any(axis=1)
         turned += np.angle(factors[~rough]).sum()
         first, last = np.r_[first[rough], middle[rough]], np.r_[middle[rough], last[rough]]
         at_first, at_last = np.r_[at_first[rough], at_middle[rough]], np.r_[at_middle[rough], at_last[rough]]
-        if not 0 < first.size < MOST_INTERVALS:
+        if not 0 < first.size < CONTOUR.most_intervals:
             break
         middle = 0.5 * (first + last)
         at_middle = system.sample(middle).matrices()
@@ -189,7 +198,7 @@ def _described(system: System) -> str:
     across = np.geomspace(0.1 * slowest, 10 * fastest, 80)
     omega = (across[:, None] * (1 - 1j * np.geomspace(1e-4, 2.0, 16))).ravel()
     size = np.abs(np.linalg.det(system.sample(omega).matrices()))
-    zeros = [_zero(system, start) for start in omega[np.argsort(size)[:SEARCHES]]]
+    zeros = [_zero(system, start) for start in omega[np.argsort(size)[: CONTOUR.searches]]]
     growing = [zero for zero in zeros if zero is not None]
     if not growing:
         return "a vibration grows"

@@ -9,12 +9,6 @@ from scipy.special import ndtr
 from movingfrf._basics.arrays import FloatArray
 from movingfrf.results.findings import Finding
 
-# Levels over which the peak factor is integrated.
-PEAK_POINTS = 400
-
-# Contact counts as lost from so many expected lift-offs on, or from such a share of the time.
-LIFT_OFFS, LIFTED_OFF = 1.0, 1e-3
-
 
 def peak_factor(crossings: ArrayLike) -> FloatArray:
     """Give the expected largest value of a Gaussian process, over its root mean square.
@@ -42,8 +36,8 @@ def peak_factor(crossings: ArrayLike) -> FloatArray:
     count = np.asarray(crossings, float)[..., None]
     # Beyond the upper end the chance is below e^{-32}. Of an even, analytic function the trapezoidal rule converges
     # exponentially.
-    end = np.sqrt(2 * np.log(np.maximum(count, 1.0))) + 8.0
-    level, step = end * np.linspace(0.0, 1.0, PEAK_POINTS), end[..., 0] / (PEAK_POINTS - 1)
+    end, points = np.sqrt(2 * np.log(np.maximum(count, 1.0))) + 8.0, 400
+    level, step = end * np.linspace(0.0, 1.0, points), end[..., 0] / (points - 1)
     exceeded: FloatArray = -np.expm1(-count * np.exp(-0.5 * level**2))
     return step * (exceeded.sum(axis=-1) - 0.5 * exceeded[..., 0])
 
@@ -59,8 +53,13 @@ def lift_off(load: FloatArray, rms: FloatArray, crossing: FloatArray) -> tuple[F
     return ndtr(-level), np.nan_to_num(crossing) * np.exp(-0.5 * level**2)
 
 
-def lifting_off(share: FloatArray, rate: FloatArray, exposure: float) -> list[Finding]:
-    """Contacts that are likely to lift off within the exposure."""
+def lifting_off(
+    share: FloatArray, rate: FloatArray, exposure: float, *, most_times: float = 1.0, most_share: float = 1e-3
+) -> list[Finding]:
+    """Contacts that are likely to lift off within the exposure.
+
+    Contact counts as lost, by convention, beyond so many expected lift-offs or beyond such a share of the time.
+    """
     return [
         Finding(
             "contact_lost",
@@ -69,5 +68,5 @@ def lifting_off(share: FloatArray, rate: FloatArray, exposure: float) -> list[Fi
             "accelerations are not to be relied on",
         )
         for contact, (part, often) in enumerate(zip(share, rate * exposure, strict=True))
-        if often > LIFT_OFFS or part > LIFTED_OFF
+        if often > most_times or part > most_share
     ]

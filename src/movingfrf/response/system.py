@@ -10,7 +10,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf.guideways.guideway import Guideway
-from movingfrf.response.batches import product
+from movingfrf.response.batches import matrix_product
 from movingfrf.vehicles.dynamics import Dynamics
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -40,7 +40,7 @@ class Sample(NamedTuple):
 
     def matrices(self) -> ComplexArray:
         """I + D G, shape (frequency, contact, contact): singular at the poles of the coupled system."""
-        matrices: ComplexArray = np.eye(self.frf.shape[1]) + product(self.stiffness, self.frf)
+        matrices: ComplexArray = np.eye(self.frf.shape[1]) + matrix_product(self.stiffness, self.frf)
         return matrices
 
 

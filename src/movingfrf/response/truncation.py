@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
-from movingfrf.response.batches import product, solve_contacts
+from movingfrf.response.batches import matrix_product, solve_contacts
 from movingfrf.response.line import SpectralGrid
 from movingfrf.response.system import Sample, System
 
-# The change in any output that a rigid road beyond the truncation may make is 1e-6, relative L2. The spectra are
-# those of records under an exponential window; undoing it raises what was cut early against what comes late.
-NEGLIGIBLE = 3e-8
 
-# Bands, equally wide in the logarithm, within which the system counts as constant.
-BANDS = 160
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TruncationSearch:
+    """What tunes the search for the truncation; in brackets, between what each number is safe."""
+
+    # The change in any output that a rigid road beyond the truncation may make is 1e-6, relative L2. The spectra
+    # are those of records under an exponential window; undoing it raises what was cut early against what comes
+    # late.
+    negligible: float = 3e-8  # [1e-9 to 1e-7]
+    # Bands, equally wide in the logarithm, within which the system counts as constant.
+    bands: int = 160  # [80 to 640]
+
+
+TRUNCATION = TruncationSearch()
 
 
 class Influence(NamedTuple):
@@ -33,7 +42,7 @@ class Influence(NamedTuple):
 
 def bands(grid: SpectralGrid) -> IntArray:
     """Give the number of the first frequency of each band; one band begins at the grid's truncation."""
-    edges = np.geomspace(1, grid.size, BANDS + 1).astype(int)
+    edges = np.geomspace(1, grid.size, TRUNCATION.bands + 1).astype(int)
     starts = np.unique(np.r_[0, edges, min(grid.untouched, grid.size - 1)])
     return starts[starts < grid.size]
 
@@ -43,7 +52,7 @@ def middles(starts: IntArray, grid: SpectralGrid) -> ComplexArray:
     return grid.omega((starts + np.r_[starts[1:], grid.size] - 1) // 2)
 
 
-def influence(system: System, starts: IntArray, sample: Sample, roughness: ComplexArray) -> Influence:
+def guideway_influence(system: System, starts: IntArray, sample: Sample, roughness: ComplexArray) -> Influence:
     """Estimate the guideway's part in every output from the system at the middle of each band.
 
     A rigid road changes the displacement under the contacts by −W, hence the force by D W and the motion by
@@ -68,11 +77,12 @@ def influence(system: System, starts: IntArray, sample: Sample, roughness: Compl
     omega, frf, stiffness = sample
     unit = np.broadcast_to(np.eye(frf.shape[1], dtype=complex), frf.shape)
     force = solve_contacts(frf, stiffness, unit)
-    deflection = product(frf, force)
+    deflection = matrix_product(frf, force)
     moved = _motions(system, omega, deflection)
     motion = moved - _motions(system, omega, unit)
     squared = np.abs(omega[:, None, None]) ** 2
-    change = np.abs(np.concatenate([product(stiffness, deflection), deflection, moved, squared * moved], axis=1))
+    pushed = matrix_product(stiffness, deflection)
+    change = np.abs(np.concatenate([pushed, deflection, moved, squared * moved], axis=1))
     whole = np.abs(np.concatenate([force, deflection, motion, squared * motion], axis=1))
     power = np.add.reduceat(roughness.real**2 + roughness.imag**2, starts, axis=0)
     energy = np.einsum("boc,bc->bo", change, np.sqrt(power)) ** 2
@@ -98,7 +108,7 @@ def first_negligible(found: Influence, roughness: ComplexArray) -> int:
     Parameters
     ----------
     found : Influence
-        What `influence` returned.
+        What `guideway_influence` returned.
     roughness : ndarray, shape (frequency, contact)
         Spectra of the elevation under the contacts [m s].
 
@@ -107,7 +117,7 @@ def first_negligible(found: Influence, roughness: ComplexArray) -> int:
     int
         Number of the frequency; the number of frequencies if there is no such frequency.
     """
-    allowed = NEGLIGIBLE**2
+    allowed = TRUNCATION.negligible**2
     beyond = np.cumsum(found.energy[::-1], axis=0)[::-1]
     harmful_bands = np.flatnonzero((_relative(beyond, found.total) > allowed).any(axis=1))
     if not harmful_bands.size:

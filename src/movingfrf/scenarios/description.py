@@ -10,7 +10,7 @@ import numpy as np
 from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.welch import welch
-from movingfrf.response.line import BYTES_PER_SAMPLE, SpectralGrid
+from movingfrf.response.line import TRANSFORM, SpectralGrid
 from movingfrf.response.simulation import spectral_grid
 from movingfrf.response.system import joined, steady_state
 from movingfrf.results.findings import near_critical
@@ -243,7 +243,7 @@ def _run(scenario: Scenario) -> list[tuple[str, str]]:
         assert scenario.loads is not None
         grid = SpectralGrid(samples=journey.samples, time_step=journey.time_step, truncation=journey.truncation)
         channels = len(scenario.loads.positions) + len(scenario.loads.observe)
-    memory = BYTES_PER_SAMPLE * channels * grid.padded
+    memory = TRANSFORM.bytes_per_sample * channels * grid.padded
     kept = f"{grid.kept} of them with the road" if journey.truncation is not None else "the truncation is found"
     return [
         ("speed", f"{journey.speed:g} m/s ({3.6 * journey.speed:g} km/h)"),

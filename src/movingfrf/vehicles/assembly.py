@@ -12,9 +12,6 @@ from movingfrf._basics.checks import Checks, checking
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.vehicle import Vehicle
 
-# Bodies whose hinges leave less of a motion than this are held by a hinge that holds them already.
-INDEPENDENT = 1e-9
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
@@ -323,9 +320,11 @@ def _unhinged(layout: _Layout, hinges: Sequence[Hinge]) -> tuple[list[int], Floa
     free = np.zeros((layout.dofs, len(kept)))
     free[kept, np.arange(len(kept))] = 1.0
     if rows:
+        # Of hinges the determinant is 0 or ±1, but for rounding; at 0 one holds a body that others hold already.
+        dependent = 1e-9  # [1e-12 to 0.5]
         constraint = np.array(rows)
         bound = constraint[:, given_up]
-        if len(set(given_up)) < len(given_up) or np.abs(np.linalg.det(bound)) < INDEPENDENT:
+        if len(set(given_up)) < len(given_up) or np.abs(np.linalg.det(bound)) < dependent:
             with checking() as check:
                 check.refuse(
                     "hinges", "must not hold a body twice: each body may be the second one of one hinge only"

@@ -24,28 +24,40 @@ import scipy.linalg
 
 from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 
-# Above this condition number of the modal matrix (a defective or nearly defective mode) the modes no longer
-# carry the digits and each frequency is solved directly.
-WORST_MODAL_CONDITION = 1e6
 
-# Rigid contacts whose prescribed motions are closer to each other than this prescribe the same one twice.
-INDEPENDENT = 1e-9
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solution:
+    """What tunes how a vehicle is solved; in brackets, between what each number is safe."""
+
+    # Above this condition number of the modal matrix (a defective or nearly defective mode) the modes no longer
+    # carry the digits and each frequency is solved directly.
+    worst_condition: float = 1e6  # [1e3 to 1e8]
+    # Rigid contacts whose prescribed motions are closer to each other than this prescribe the same one twice.
+    independent: float = 1e-9  # [1e-12 to 1e-6]
 
 
-class Matrices(NamedTuple):
-    """Mass, damping and stiffness, or any polynomial in iω: the coefficients of 1, iω and (iω)² in turn."""
+SOLUTION = Solution()
+
+
+class Quadratic(NamedTuple):
+    """A polynomial in iω whose coefficients are matrices, by ascending power."""
 
     constant: FloatArray
     linear: FloatArray
     square: FloatArray
 
-    def mapped(self, left: FloatArray, right: FloatArray) -> Matrices:
-        """Multiply every coefficient from both sides."""
-        return Matrices(*(left @ part @ right for part in self))
+    @classmethod
+    def of(cls, mass: FloatArray, damping: FloatArray, stiffness: FloatArray) -> Quadratic:
+        """Dynamic stiffness K + iωC + (iω)²M."""
+        return cls(constant=stiffness, linear=damping, square=mass)
 
-    def transposed(self) -> Matrices:
+    def mapped(self, left: FloatArray, right: FloatArray) -> Quadratic:
+        """Multiply every coefficient from both sides."""
+        return Quadratic(*(left @ part @ right for part in self))
+
+    def transposed(self) -> Quadratic:
         """Transpose every coefficient."""
-        return Matrices(*(part.T for part in self))
+        return Quadratic(*(part.T for part in self))
 
     def terms(self) -> list[tuple[int, FloatArray]]:
         """Powers of iω whose coefficients are not zero."""
@@ -107,7 +119,7 @@ def split(contact_map: FloatArray, rigid: BoolArray) -> Split | None:
     # Rotations turn by less than wheels move; a column stands for a motion whatever its unit.
     size = np.abs(rows).max(axis=0)
     _, triangle, order = scipy.linalg.qr(rows / np.where(size, size, 1.0), pivoting=True, mode="economic")
-    if np.abs(np.diag(triangle)).min() < INDEPENDENT:
+    if np.abs(np.diag(triangle)).min() < SOLUTION.independent:
         return None
     bound, kept = np.sort(order[:count]), np.sort(order[count:])
     free, prescribed = np.zeros((dofs, kept.size)), np.zeros((dofs, contacts))
@@ -136,11 +148,11 @@ class Part:
         Numbers of its degrees of freedom and contacts within the vehicle.
     motion : Split
         Its free and prescribed motion.
-    own : Matrices
+    own : Quadratic
         P: dynamic stiffness of the free coordinates.
-    entry : Matrices
+    entry : Quadratic
         H: force on the free coordinates per displacement below the contacts, shape (free, contact).
-    direct : Matrices
+    direct : Quadratic
         E: force at the contacts per displacement below them, the free coordinates held, shape (contact, contact).
     modes : Modes or None
         Of the free coordinates; None if a mode is defective, or so nearly that it carries no digits.
@@ -149,9 +161,9 @@ class Part:
     dofs: IntArray
     contacts: IntArray
     motion: Split
-    own: Matrices
-    entry: Matrices
-    direct: Matrices
+    own: Quadratic
+    entry: Quadratic
+    direct: Quadratic
     modes: Modes | None
 
     def response(self, omega: ComplexArray, displacement: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
@@ -298,34 +310,35 @@ def parts(
     tuple of Part
         In the order of their first degrees of freedom.
     """
-    whole = Matrices(stiffness, damping, mass)
+    whole = Quadratic.of(mass, damping, stiffness)
     groups = _connected(np.sum([np.abs(part) for part in whole], axis=0), contact_map)
     return tuple(_part(whole, contact_map, springs, dashpots, dofs) for dofs in groups)
 
 
 def held(
-    matrices: Matrices, contact_map: FloatArray, springs: FloatArray, dashpots: FloatArray
-) -> tuple[Matrices, FloatArray, Matrices]:
+    own: Quadratic, contact_map: FloatArray, springs: FloatArray, dashpots: FloatArray
+) -> tuple[Quadratic, FloatArray, Quadratic]:
     """Return A with the elastic contact springs in it, the rows of the elastic contacts, and their k(ω)."""
     elastic = np.isfinite(springs)
     rows = np.where(elastic[:, None], contact_map, 0.0)
-    k = Matrices(np.diag(np.where(elastic, springs, 0.0)), np.diag(dashpots), np.zeros((len(rows), len(rows))))
+    massless = np.zeros((len(rows), len(rows)))
+    k = Quadratic.of(massless, np.diag(dashpots), np.diag(np.where(elastic, springs, 0.0)))
     added = k.mapped(rows.T, rows)
-    return Matrices(*(own + more for own, more in zip(matrices, added, strict=True))), rows, k
+    return Quadratic(*(part + more for part, more in zip(own, added, strict=True))), rows, k
 
 
 def _part(
-    whole: Matrices, contact_map: FloatArray, springs: FloatArray, dashpots: FloatArray, dofs: IntArray
+    whole: Quadratic, contact_map: FloatArray, springs: FloatArray, dashpots: FloatArray, dofs: IntArray
 ) -> Part:
     contacts = np.flatnonzero(np.abs(contact_map[:, dofs]).any(axis=1))
     rows, springs, dashpots = contact_map[np.ix_(contacts, dofs)], springs[contacts], dashpots[contacts]
-    own = Matrices(*(part[np.ix_(dofs, dofs)] for part in whole))
+    own = Quadratic(*(part[np.ix_(dofs, dofs)] for part in whole))
     motion = split(rows, np.isinf(springs))
     assert motion is not None  # the vehicle has checked that
     impedance, elastic, k = held(own, rows, springs, dashpots)
     free, prescribed = motion.free, motion.prescribed
-    entry = Matrices(*(free.T @ (elastic.T @ c - a @ prescribed) for c, a in zip(k, impedance, strict=True)))
-    direct = Matrices(
+    entry = Quadratic(*(free.T @ (elastic.T @ c - a @ prescribed) for c, a in zip(k, impedance, strict=True)))
+    direct = Quadratic(
         *(
             c - c @ elastic @ prescribed - (c @ elastic @ prescribed).T + prescribed.T @ a @ prescribed
             for c, a in zip(k, impedance, strict=True)
@@ -344,14 +357,14 @@ def _connected(coupling: FloatArray, contact_map: FloatArray) -> Sequence[IntArr
     return [np.flatnonzero(group == number) for number in range(count)]
 
 
-def state_matrix(matrices: Matrices) -> FloatArray:
+def state_matrix(own: Quadratic) -> FloatArray:
     """Rates of displacement and velocity per displacement and velocity."""
-    stiffness, damping, mass = matrices
-    rates = np.linalg.solve(mass, np.hstack([-stiffness, -damping]))
+    mass = own.square
+    rates = np.linalg.solve(mass, np.hstack([-own.constant, -own.linear]))
     return np.vstack([np.hstack([np.zeros_like(mass), np.eye(len(mass))]), rates])
 
 
-def _modes(own: Matrices) -> Modes | None:
+def _modes(own: Quadratic) -> Modes | None:
     """Poles and residues; None if a mode is defective, or so nearly that it carries no digits."""
     dofs = len(own.constant)
     if not dofs:
@@ -364,7 +377,7 @@ def _modes(own: Matrices) -> Modes | None:
         inverse = np.linalg.inv(vectors)
     except np.linalg.LinAlgError:
         return None
-    if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < WORST_MODAL_CONDITION:
+    if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < SOLUTION.worst_condition:
         return None
     weights = np.linalg.solve(own.square, inverse[:, dofs:].T).T / np.abs(poles).max()
     return Modes(poles, vectors[:dofs], weights)

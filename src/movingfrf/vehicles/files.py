@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 import zipfile
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +16,31 @@ from movingfrf._basics.checks import Checks, ParameterError, checking
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.vehicle import Vehicle
 
-# Matrices and lists that a file must hold, and what may stand beside them.
-REQUIRED = ("mass", "damping", "stiffness", "contact_map", "position", "contact_stiffness")
-PER_CONTACT = {
-    "contact_damping": "damping",
-    "path": "path",
-    "across": "across",
-    "footprint": "footprint",
-    "cams": "cams",
-}
-OPTIONAL = (*PER_CONTACT, "vertical", "dof_names", "contact_name")
 
-# What a file of this kind may weigh at most [bytes]: a vehicle of a thousand degrees of freedom.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VehicleArrays:
+    """Names of the arrays that a file may hold."""
+
+    matrices: tuple[str, ...] = ("mass", "damping", "stiffness", "contact_map")
+    # Per contact: what a file must say of it, and what it may say.
+    contact: tuple[str, ...] = ("position", "contact_stiffness")
+    contact_optional: tuple[str, ...] = ("contact_damping", "path", "across", "footprint", "cams")
+    descriptive: tuple[str, ...] = ("vertical", "dof_names", "contact_name")
+
+    @property
+    def required(self) -> tuple[str, ...]:
+        """What a file must hold."""
+        return (*self.matrices, *self.contact)
+
+    @property
+    def optional(self) -> tuple[str, ...]:
+        """What may stand beside it."""
+        return (*self.contact_optional, *self.descriptive)
+
+
+ARRAYS = VehicleArrays()
+
+# What a file of this kind may weigh at most [bytes; a convention]: a vehicle of a thousand degrees of freedom.
 LARGEST_FILE = 2**28
 
 
@@ -95,7 +109,10 @@ def write_vehicle(vehicle: Vehicle, file: str | Path) -> None:
         "contact_map": contact_map,
         "position": vehicle.positions,
         "contact_stiffness": vehicle.springs,
-        **{key: np.array([getattr(one, name) for one in vehicle.contacts]) for key, name in PER_CONTACT.items()},
+        **{
+            name: np.array([getattr(one, _field(name)) for one in vehicle.contacts])
+            for name in ARRAYS.contact_optional
+        },
         "vertical": np.asarray(vehicle.vertical),
         "dof_names": np.array(vehicle.dof_names),
         "contact_name": np.array([one.name for one in vehicle.contacts]),
@@ -114,18 +131,19 @@ def write_vehicle(vehicle: Vehicle, file: str | Path) -> None:
 
 def _filled(arrays: Mapping[str, Any]) -> Vehicle:
     with checking() as check:
-        for name in REQUIRED:
+        for name in ARRAYS.required:
             if name not in arrays:
                 check.refuse(name, "is missing")
+        known = (*ARRAYS.required, *ARRAYS.optional)
         for name in arrays:
-            if name not in (*REQUIRED, *OPTIONAL):
-                check.refuse(name, f"is not known; a vehicle consists of {', '.join((*REQUIRED, *OPTIONAL))}")
+            if name not in known:
+                check.refuse(name, f"is not known; a vehicle consists of {', '.join(known)}")
     with checking() as check:
-        matrices = {name: _table(check, name, arrays[name]) for name in REQUIRED[:4]}
+        matrices = {name: _table(check, name, arrays[name]) for name in ARRAYS.matrices}
         contacts, dofs = matrices["contact_map"].shape
         columns = {
             name: _row(check, name, arrays[name], contacts)
-            for name in ("position", "contact_stiffness", *PER_CONTACT)
+            for name in (*ARRAYS.contact, *ARRAYS.contact_optional)
             if name in arrays
         }
         paths = columns.get("path", np.zeros(contacts))
@@ -136,12 +154,17 @@ def _filled(arrays: Mapping[str, Any]) -> Vehicle:
         called = _texts(check, "contact_name", arrays.get("contact_name", [""] * contacts))
         if len(called) != contacts:
             check.refuse("contact_name", f"must be {contacts} texts, got {len(called)}")
-    columns = {PER_CONTACT.get(name, name.removeprefix("contact_")): column for name, column in columns.items()}
+    columns = {_field(name): column for name, column in columns.items()}
     listed = []
     for number in range(contacts):
         values: dict[str, Any] = {name: float(column[number]) for name, column in columns.items()}
         listed.append(Contact(**values | {"path": int(paths[number]), "name": called[number]}))
     return Vehicle(**matrices, contacts=listed, vertical=vertical, dof_names=names)
+
+
+def _field(name: str) -> str:
+    """Name the field of a `Contact` that an array of values per contact fills."""
+    return name.removeprefix("contact_")
 
 
 def _texts(check: Checks, name: str, value: Any) -> list[str]:
@@ -191,7 +214,7 @@ def _read_mat(path: Path) -> dict[str, Any]:
     try:
         found = matlab_file.arrays_and_texts(data)
         numbers = {name: stored.load() for name, stored in found.numbers.items()}
-        return numbers | {name: load() if name in OPTIONAL else [] for name, load in found.texts.items()}
+        return numbers | {name: load() if name in ARRAYS.optional else [] for name, load in found.texts.items()}
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 

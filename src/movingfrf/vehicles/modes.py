@@ -11,9 +11,6 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf.vehicles.dynamics import state_matrix
 from movingfrf.vehicles.vehicle import Vehicle
 
-# A description names the degrees of freedom that have at least this share in a mode.
-LEAST = 0.03
-
 
 class Mode(NamedTuple):
     """One vibration of a vehicle on its contact springs, the guideway rigid."""
@@ -75,7 +72,7 @@ def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
     return sorted(found, key=lambda mode: abs(mode.pole))
 
 
-def _described(names: Sequence[str], share: FloatArray) -> str:
-    """Name what moves, the strongest first."""
+def _described(names: Sequence[str], share: FloatArray, *, least: float = 0.03) -> str:
+    """Name what moves by at least a share (0.03, a convention), the strongest first."""
     strongest_first = np.argsort(-share, kind="stable").tolist()
-    return ", ".join(f"{names[n]} {100 * share[n]:.0f} %" for n in strongest_first if share[n] >= LEAST)
+    return ", ".join(f"{names[n]} {100 * share[n]:.0f} %" for n in strongest_first if share[n] >= least)

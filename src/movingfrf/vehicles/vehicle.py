@@ -12,13 +12,10 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
 from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf.vehicles.contact import Contact
-from movingfrf.vehicles.dynamics import Dynamics, Matrices, held, parts, split
+from movingfrf.vehicles.dynamics import Dynamics, Quadratic, held, parts, split
 
 # Standard acceleration of free fall as the project fixes it [m/s²].
 GRAVITY = 9.81
-
-# Offsets between contacts that differ by less [m] are the same: the cars of a train have most of theirs in common.
-SAME_OFFSET_DIGITS = 9
 
 
 class Offsets(TypedDict):
@@ -134,7 +131,9 @@ class Vehicle:
     def offsets(self) -> Offsets:
         """Offset of every contact from every contact, as a guideway's `moving_frf` takes them [m]."""
         ahead, across = self.positions, self.across
-        offsets: Offsets = {"ahead": np.round(ahead[:, None] - ahead, SAME_OFFSET_DIGITS)}
+        # The cars of a train have most of their offsets in common, but for rounding: so many digits after the point
+        # tell them apart, and agree [9 to 12].
+        offsets: Offsets = {"ahead": np.round(ahead[:, None] - ahead, 9)}
         if across.any():
             offsets["across"] = across[:, None] - across
             offsets["source_across"] = np.broadcast_to(across, offsets["ahead"].shape)
@@ -203,9 +202,9 @@ class Vehicle:
         """Stiffness with the guideway held still, rigid contacts left out [N/m]."""
         return self._held()[0].constant
 
-    def _held(self) -> tuple[Matrices, FloatArray, Matrices]:
+    def _held(self) -> tuple[Quadratic, FloatArray, Quadratic]:
         mass, damping, stiffness, contact_map = self.matrices
-        return held(Matrices(stiffness, damping, mass), contact_map, self.springs, self.dashpots)
+        return held(Quadratic.of(mass, damping, stiffness), contact_map, self.springs, self.dashpots)
 
 
 def require_vehicle(vehicle: object) -> None:
