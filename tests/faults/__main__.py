@@ -29,6 +29,7 @@ SELECTION = [
     "tests/laws/test_properties.py",
     "tests/laws/test_truncation.py",
     "tests/laws/test_random.py",
+    "tests/laws/test_random_statistics.py",
     "tests/test_roads.py",
     "tests/test_random_command.py",
 ]
@@ -56,11 +57,13 @@ REFERENCE = [
     "tests/stepping/test_elements.py",
     "tests/stepping/test_sampled.py",
     "tests/stepping/test_coupled.py",
+    "tests/stepping/test_coupled_laws.py",
     "tests/stepping/test_duhamel.py",
     "tests/stepping/test_refusals.py",
     "tests/stepping/test_impulse.py",
     "tests/stepping/test_schemes.py",
     "tests/stepping/test_plate.py",
+    "tests/stepping/test_plate_travel.py",
 ]
 
 # Two processes share the machine, each on one core.
