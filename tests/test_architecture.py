@@ -11,7 +11,7 @@ import re
 
 import pytest
 
-from tests.rooms import DOORS, LAYERS, LEVEL, MODULES, SOURCE, TREES, UNSEEN, graph, imported
+from tests.rooms import DOORS, LAYERS, LEVEL, MODULES, SOURCE, TREES, UNSEEN, arrows, graph, imported
 
 
 def faults(module: str, tree: ast.AST) -> list[str]:
@@ -122,6 +122,14 @@ def test_the_rule_lets_pass_what_it_should(module, line):
 def test_a_circle_is_found():
     assert circle({"a": {"b"}, "b": {"c"}, "c": {"b"}}) == ["b", "c"]
     assert circle({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == []
+
+
+def test_the_picture_shows_today_s_arrows():
+    """`make picture` draws it from the imports, and writes into it what it drew."""
+    picture = (SOURCE.parents[1] / "docs" / "images" / "rooms.svg").read_text(encoding="utf-8")
+    drawn = re.search(r"<dc:description>(.*?)</dc:description>", picture)
+    assert drawn
+    assert drawn[1].replace("&gt;", ">").split() == [f"{upper}>{lower}" for upper, lower in arrows()]
 
 
 def constants(tree: ast.Module) -> list[str]:
