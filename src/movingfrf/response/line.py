@@ -20,7 +20,7 @@ class Transform:
 
     # What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the
     # padded record grow by its inverse, which is why it is not smaller.
-    wrap_around: float = 3e-5  # [1e-6 to 1e-4]
+    wrap_around: float = 3e-5  # [1e-6 to 5e-5]
     # Share of the padding within which the level of a record fades out after its end; the rest of the padding is
     # for the response to die away.
     level_fades: float = 0.25  # [0.15 to 0.4]

@@ -21,7 +21,7 @@ class PanelRule:
     points: int = 12  # [8 to 20]
     # What the last two Legendre coefficients of a density may amount to over all panels, relative to its integral.
     # The integrals themselves are far more accurate, 1e-9 and better: the rule is exact for twice the degree.
-    unresolved: float = 1e-3  # [1e-5 to 1e-2]
+    unresolved: float = 1e-3  # [1e-4 to 3e-3]
     # A panel this narrow, relative to its frequency, cannot be halved any further; so many panels are beyond
     # reason.
     narrowest: float = 1e-10  # [1e-13 to 1e-9]
