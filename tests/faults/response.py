@@ -87,7 +87,7 @@ FAULTS = [
     ),
     Fault("lift-offs too rare", "response/statistics.py", "(crossing) * np.exp(-0.5", "(crossing) * np.exp(-1.0"),
     Fault("lift-offs unseen", "response/statistics.py", "if often > most_times or part", "if False and part"),
-    Fault("end of the band unseen", "response/random.py", "if share <= THRESHOLDS.at_the_end:", "if share >= 0:"),
+    Fault("end of the band unseen", "response/random.py", "if share <= TOLERANCES.at_the_end:", "if share >= 0:"),
     Fault("weighting of amplitudes", "response/random.py", "lines.frequency)) ** 2", "lines.frequency))"),
     Fault(
         "first level counted too often",
@@ -99,14 +99,14 @@ FAULTS = [
     Fault(
         "path unlike itself",
         "response/random.py",
-        "axis1=1, axis2=2) - 1) > THRESHOLDS.semi",
-        "axis1=1, axis2=2) - 1) > 1e9 + THRESHOLDS.semi",
+        "axis1=1, axis2=2) - 1) > TOLERANCES.semi",
+        "axis1=1, axis2=2) - 1) > 1e9 + TOLERANCES.semi",
     ),
     Fault(
         "lopsided coherence",
         "response/random.py",
-        "shared.swapaxes(1, 2)) > THRESHOLDS.semi",
-        "shared.swapaxes(1, 2)) > 9 + THRESHOLDS.semi",
+        "shared.swapaxes(1, 2)) > TOLERANCES.semi",
+        "shared.swapaxes(1, 2)) > 9 + TOLERANCES.semi",
     ),
     Fault("damping always blamed", "response/random.py", "undamped: float = 1e-9", "undamped: float = 1e9"),
     Fault("threads that wait", "response/solve.py", "with unthreaded(contacts):", "with unthreaded(1):"),

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Thresholds:
+class Tolerances:
     """What counts as rounding, as undamped and as too much; in brackets, between what each number is safe."""
 
     # A variance that is this small a share of a comparable one is rounding.
@@ -58,7 +58,7 @@ class Thresholds:
     at_the_end: float = 0.01  # [a convention]
 
 
-THRESHOLDS = Thresholds()
+TOLERANCES = Tolerances()
 
 # Powers of the frequency whose integrals the statistics need.
 POWERS = (0, 2, 4)
@@ -96,7 +96,7 @@ class _Road:
         else:
             shared = _matrices(self.coherence, spatial_frequency, across)
         values, vectors = np.linalg.eigh(shared)
-        if values.min() < -THRESHOLDS.semidefinite * len(across):
+        if values.min() < -TOLERANCES.semidefinite * len(across):
             n = spatial_frequency[values.min(axis=1).argmin()]
             raise ValueError(
                 "coherence must be positive semidefinite over the paths of the vehicle, but at "
@@ -287,9 +287,9 @@ def _matrices(coherence: Coherence, spatial_frequency: FloatArray, across: Float
             check.refuse("coherence", f"must return an array (frequency, path, path), {shape}, got {shared.shape}")
         elif shared.dtype.kind not in "iuf" or not np.isfinite(shared).all():
             check.refuse("coherence", "must return real, finite numbers: neither path is ahead of the other")
-        elif (np.abs(np.diagonal(shared, axis1=1, axis2=2) - 1) > THRESHOLDS.semidefinite).any():
+        elif (np.abs(np.diagonal(shared, axis1=1, axis2=2) - 1) > TOLERANCES.semidefinite).any():
             check.refuse("coherence", "must be 1 between a path and itself, no distance apart")
-        elif (np.abs(shared - shared.swapaxes(1, 2)) > THRESHOLDS.semidefinite).any():
+        elif (np.abs(shared - shared.swapaxes(1, 2)) > TOLERANCES.semidefinite).any():
             check.refuse("coherence", "must be the same from left to right as from right to left")
     return shared
 
@@ -322,13 +322,13 @@ def _densities(system: System, road: _Road) -> Callable[[FloatArray], FloatArray
 
 def _resolved(densities: Callable[[FloatArray], FloatArray], vehicle: Vehicle, edges: FloatArray) -> Lines:
     """Frequencies that resolve the densities; where none do, the reason."""
-    comparable = np.eye(_outputs(vehicle)) + THRESHOLDS.rounding * _negligible(vehicle)
+    comparable = np.eye(_outputs(vehicle)) + TOLERANCES.rounding * _negligible(vehicle)
     try:
         return resolved(densities, edges, powers=POWERS, comparable=comparable)
     except Unresolved as failure:
         reason = (
             "a vibration without damping has no finite root mean square"
-            if vehicle.damping_ratios.min(initial=np.inf) < THRESHOLDS.undamped
+            if vehicle.damping_ratios.min(initial=np.inf) < TOLERANCES.undamped
             else "no vibration of the vehicle is without damping, so that it may be rounding that varies there; at "
             f"this speed the band of the road is {edges[0]:.3g} to {edges[-1]:.3g} Hz"
         )
@@ -357,7 +357,7 @@ def _negligible(vehicle: Vehicle) -> FloatArray:
 def _statistics(vehicle: Vehicle, lines: Lines, exposure: float) -> dict[str, FloatArray]:
     """Statistics of every quantity by their names in the schema."""
     variance, second, fourth = (lines.moment(power) for power in POWERS)
-    rounding = variance < THRESHOLDS.rounding * (_negligible(vehicle) @ variance)
+    rounding = variance < TOLERANCES.rounding * (_negligible(vehicle) @ variance)
     variance, second, fourth = (np.where(rounding, 0.0, moment) for moment in (variance, second, fourth))
     rms, crossing, peaks = np.sqrt(variance), spectral_rate(second, variance), spectral_rate(fourth, second)
     columns = {
@@ -394,7 +394,7 @@ def _at_the_end(lines: Lines, vehicle: Vehicle, spectrum: Spectrum) -> list[Find
     force = lines.density[:, _parts(vehicle)["contact_force"]]
     last = lines.frequency > 0.9 * lines.frequency[-1]
     share = float(((lines.bandwidth * last) @ force / lines.moment(0)[: force.shape[1]]).max())
-    if share <= THRESHOLDS.at_the_end:
+    if share <= TOLERANCES.at_the_end:
         return []
     return [
         Finding(

@@ -33,7 +33,7 @@ COMMENTS = "#%"
 NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
 
 
-class Layout(NamedTuple):
+class ColumnLayout(NamedTuple):
     """How the numbers stand in a file."""
 
     separator: str | None
@@ -123,7 +123,7 @@ def read_numbers(file: str | Path) -> FloatArray:
     return values
 
 
-def numbers(data: bytes, encoding: str, layout: Layout) -> FloatArray:
+def numbers(data: bytes, encoding: str, layout: ColumnLayout) -> FloatArray:
     """Read all numbers of a text whose layout is known.
 
     Parameters
@@ -132,7 +132,7 @@ def numbers(data: bytes, encoding: str, layout: Layout) -> FloatArray:
         The text.
     encoding : str
         Its encoding.
-    layout : Layout
+    layout : ColumnLayout
         Separators, names, where the numbers begin.
 
     Returns
@@ -223,7 +223,7 @@ def _lines(data: bytes, encoding: str, comment: str = COMMENTS) -> Iterator[tupl
             yield number, line
 
 
-def _layout(data: bytes, encoding: str) -> Layout:
+def _layout(data: bytes, encoding: str) -> ColumnLayout:
     most = 4  # lines of names, units and first numbers that tell how a file is laid out [a convention]
     looked_at: list[tuple[int, str]] = []
     for number, line in _lines(data, encoding):
@@ -267,7 +267,7 @@ def _is_number(field: str) -> bool:
 
 def _laid_out(
     data: bytes, encoding: str, above: list[tuple[int, str]], first: int, line: str, separator: str | None
-) -> Layout:
+) -> ColumnLayout:
     """Say how the numbers stand that begin in a line, given the lines of names and units above it."""
     if separator == "," and "." not in line and re.search(r",\s", line) and re.search(r"\d,\d", line):
         raise ValueError(
@@ -292,7 +292,9 @@ def _laid_out(
                 f"{text[:60]!r}"
             )
     comment = next((mark for mark in COMMENTS if data.lstrip().startswith(mark.encode())), COMMENTS[0])
-    return Layout(separator, _decimal(data, encoding, first, separator), comment, names, units, first, len(rows))
+    return ColumnLayout(
+        separator, _decimal(data, encoding, first, separator), comment, names, units, first, len(rows)
+    )
 
 
 def _names(line: str, separator: str | None) -> list[str]:
@@ -322,7 +324,7 @@ def _decimal(data: bytes, encoding: str, first: int, separator: str | None) -> s
     return "."
 
 
-def _first_fault(data: bytes, encoding: str, layout: Layout) -> str | None:
+def _first_fault(data: bytes, encoding: str, layout: ColumnLayout) -> str | None:
     """Say which line is the first that cannot be read."""
     said = SEPARATORS[layout.separator]
     for number, line in _rows(data, encoding, layout):
@@ -341,18 +343,18 @@ def _offset(data: bytes, line: int) -> int:
     return next((end for n, end in enumerate(ends, start=2) if n == line), 0)
 
 
-def _rows(data: bytes, encoding: str, layout: Layout) -> Iterator[tuple[int, str]]:
+def _rows(data: bytes, encoding: str, layout: ColumnLayout) -> Iterator[tuple[int, str]]:
     """Lines of numbers, as they are counted in `numbers`."""
     for number, line in _lines(data, encoding, layout.comment):
         if number >= layout.first:
             yield number, line
 
 
-def _line_of(data: bytes, encoding: str, layout: Layout, row: int) -> int:
+def _line_of(data: bytes, encoding: str, layout: ColumnLayout, row: int) -> int:
     return next((number for n, (number, _) in enumerate(_rows(data, encoding, layout)) if n == row), -1)
 
 
-def _require_whole_rows(data: bytes, encoding: str, layout: Layout, values: FloatArray) -> None:
+def _require_whole_rows(data: bytes, encoding: str, layout: ColumnLayout, values: FloatArray) -> None:
     """Tell fields that are empty from fields that are not there, which counts as damage."""
     incomplete = np.flatnonzero(np.isnan(values[:, -1]))
     if not incomplete.size:
@@ -369,7 +371,7 @@ def _require_whole_rows(data: bytes, encoding: str, layout: Layout, values: Floa
                 return
 
 
-def _words(layout: Layout, used: Sequence[int]) -> str:
+def _words(layout: ColumnLayout, used: Sequence[int]) -> str:
     words = [f"separated by {SEPARATORS[layout.separator]}"]
     words += ["decimal commas"] * (layout.decimal == ",")
     words.append({0: "no header", 1: "one header line"}.get(layout.header, f"{layout.header} header lines"))

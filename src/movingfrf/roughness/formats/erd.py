@@ -180,7 +180,7 @@ def _text(body: bytes, count: int, below: int) -> FloatArray:
         raise ValueError(f"line {below}: {width} numbers in a line do not fit {count} channels")
     skipped = len(body) - len(body.lstrip())
     below += body[:skipped].count(b"\n")
-    layout = text.Layout(separator, ".", "\x01", [str(n) for n in range(width)], [None] * width, 1, 0)
+    layout = text.ColumnLayout(separator, ".", "\x01", [str(n) for n in range(width)], [None] * width, 1, 0)
     try:
         values = text.numbers(body[skipped:], "latin-1", layout)
     except ValueError as error:
