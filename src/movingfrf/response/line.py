@@ -20,14 +20,14 @@ class Transform:
 
     # What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the
     # padded record grow by its inverse, which is why it is not smaller.
-    wrap_around: float = 3e-5  # [1e-6 to 5e-5]
+    wrap_around: float = 3e-5  # [1e-5 to 5e-5]
     # Share of the padding within which the level of a record fades out after its end; the rest of the padding is
     # for the response to die away.
     level_fades: float = 0.25  # [0.15 to 0.4]
     # Slope and curvature fade earlier: after so many times the ratio of the record's typical slope to its typical
     # curvature, at most within this share of the padding. So many samples before the end tell what is typical.
     slope_fades: float = 0.05  # [0.02 to 0.1]
-    times_its_scale: float = 12.0  # [6 to 24]
+    times_its_scale: float = 12.0  # [12 to 16]
     lately: int = 4096  # [256 to 65 536]
     # Share of the truncation over which the guideway stiffens beyond it. What a sharp cut discards would ring on
     # and on, and the window raises what comes late.

@@ -102,7 +102,8 @@ def moving_loads(
         frf = frf * grid.compliance(some)[:, None, None]
         deflection[first:last] = (frf @ spectra[first:last, :, None])[:, :, 0]
         progress("moving FRF", last / grid.kept)
-    # Beyond the truncation every so-many-th frequency, 256 of them at most, tells how much is left out.
+    # Beyond the truncation every so-many-th frequency, 256 of them at most [a convention], tells how much is left
+    # out.
     stride = (grid.size - grid.untouched) // 256 + 1
     beyond = np.arange(grid.untouched, grid.size, stride)
     frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(beyond))

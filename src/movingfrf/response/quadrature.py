@@ -18,7 +18,7 @@ class PanelRule:
     """What tunes the integrals over densities; in brackets, between what each number is safe."""
 
     # Gauss points of a panel. Its integrals are exact for polynomials of degree 23.
-    points: int = 12  # [8 to 20]
+    points: int = 12  # [8 to 12]
     # What the last two Legendre coefficients of a density may amount to over all panels, relative to its integral.
     # The integrals themselves are far more accurate, 1e-9 and better: the rule is exact for twice the degree.
     unresolved: float = 1e-3  # [1e-4 to 3e-3]

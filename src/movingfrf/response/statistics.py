@@ -35,7 +35,7 @@ def peak_factor(crossings: ArrayLike) -> FloatArray:
     """
     count = np.asarray(crossings, float)[..., None]
     # Beyond the upper end the chance is below e^{-32}. Of an even, analytic function the trapezoidal rule converges
-    # exponentially.
+    # exponentially: 200 points leave 1e-11, 400 [200 to any number] nothing but rounding.
     end, points = np.sqrt(2 * np.log(np.maximum(count, 1.0))) + 8.0, 400
     level, step = end * np.linspace(0.0, 1.0, points), end[..., 0] / (points - 1)
     exceeded: FloatArray = -np.expm1(-count * np.exp(-0.5 * level**2))

@@ -131,8 +131,8 @@ class Vehicle:
     def offsets(self) -> Offsets:
         """Offset of every contact from every contact, as a guideway's `moving_frf` takes them [m]."""
         ahead, across = self.positions, self.across
-        # The cars of a train have most of their offsets in common, but for rounding: so many digits after the point
-        # tell them apart, and agree [9 to 12].
+        # To nine digits after the point [9 to 12]: the cars of a train have most of their offsets in common, but
+        # for rounding.
         offsets: Offsets = {"ahead": np.round(ahead[:, None] - ahead, 9)}
         if across.any():
             offsets["across"] = across[:, None] - across
