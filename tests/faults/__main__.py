@@ -42,6 +42,15 @@ PROFILES = [
     "tests/test_profile_description.py",
 ]
 
+ABOUT_PROFILES = (
+    "roughness/fi",
+    "roughness/formats",
+    "roughness/preparation",
+    "metrics/profile",
+    "reports/profile",
+    "_basics/matlab",
+)
+
 # These first where the fault lies in what is shown: figures, tables, files.
 REPORTS = [
     "tests/test_plots.py",
@@ -74,9 +83,7 @@ def selection(fault: Fault | None) -> list[str]:
     """List what runs against a fault: first the tests that lie next to it."""
     file = fault.file if fault else ""
     independent = file.startswith(("stepping/", "guideways/sampled"))
-    if file.startswith(
-        ("roughness/fi", "roughness/formats", "roughness/preparation", "metrics/profile", "reports/profile")
-    ):
+    if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE
     if file.startswith(SHOWN):
         return REPORTS + SELECTION + REFERENCE
