@@ -46,6 +46,7 @@ ABOUT_PROFILES = (
     "roughness/fi",
     "roughness/formats",
     "roughness/preparation",
+    "roughness/profile",
     "metrics/profile",
     "reports/profile",
     "_basics/matlab",
