@@ -1,7 +1,7 @@
 """Moving FRF against the methods that step in time or convolve: part of `make bench`.
 
 The reference case by every method, at its own step and over a range of steps; the ratio at equal error is read from
-the latter (`movingfrf.comparison`). Below it stands what that ratio cannot exceed: the time of the coupled method
+the latter (`movingfrf compare`). Below it stands what that ratio cannot exceed: the time of the coupled method
 over that of what a call of `simulate` does besides moving FRFs and coupling, these taken as free: the transforms,
 the spline of the road and the labelled result. One thread, one process, medians.
 """

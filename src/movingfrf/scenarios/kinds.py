@@ -34,18 +34,6 @@ from movingfrf.vehicles.rail import bogie, carriage, wheelset
 from movingfrf.vehicles.trucks import Axle, Unit, WalkingBeam, truck
 from movingfrf.vehicles.vehicle import Vehicle
 
-# Arguments that are tables themselves, and those that are lists of tables, with their family.
-TABLES = {
-    "beam": "beam",
-    "foundation": "foundation",
-    "above": "foundation",
-    "below": "foundation",
-    "car": "vehicle",
-    "vehicle": "vehicle",
-    "spectrum": "spectrum",
-    "coherence": "coherence",
-}
-
 
 class Loads(NamedTuple):
     """Prescribed forces that travel along."""
@@ -175,6 +163,19 @@ DEFAULT_KIND = {
     "passage": "passage",
     "loads": "loads",
 }
+
+# Arguments that are tables themselves, and those that are lists of tables, with their family.
+TABLES = {
+    "beam": "beam",
+    "foundation": "foundation",
+    "above": "foundation",
+    "below": "foundation",
+    "car": "vehicle",
+    "vehicle": "vehicle",
+    "spectrum": "spectrum",
+    "coherence": "coherence",
+}
+
 TABLE_LISTS = {
     ("vehicle", "contacts"): "contact",
     ("vehicle", "bodies"): "body",
