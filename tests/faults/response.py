@@ -50,8 +50,8 @@ FAULTS = [
     Fault(
         "beyond the truncation nothing moves",
         "response/solve.py",
-        "        motion[first:last], force",
-        "        displacement[kept:] = 0.0\n        motion[first:last], force",
+        "            motion[first:last], force",
+        "            displacement[kept:] = 0.0\n            motion[first:last], force",
     ),
     Fault("deflection lifts the vehicle", "response/solve.py", "displacement[:kept] +=", "displacement[:kept] -="),
     Fault(
