@@ -22,7 +22,7 @@ LEVEL = {room: level for level, rooms in enumerate(LAYERS) for room in rooms}
 
 # The one special rule: time stepping takes a guideway's parameters, never its waves. What it agrees with, it
 # may not be made of.
-UNSEEN = {"stepping": ("guideways.waves", "guideways.critical")}
+UNSEEN = {"stepping": ("guideways.waves", "guideways.critical", "metrics.guideway")}
 
 # The doors: what lies at the root, and what each may open.
 DOORS = {"__init__": ("_basics",), "__main__": ("commands",)}

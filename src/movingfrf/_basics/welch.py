@@ -24,7 +24,7 @@ class Estimate:
     fewest_samples: int = 32  # of a record, and of a segment [a convention]
     # Below this share of its size a variation is rounding: of a sum of thousands of terms 1e-13 of it, and forces
     # that vary by a millionth of a static load are results.
-    rounding: float = 1e-9  # [1e-13 to 1e-6]
+    rounding: float = 1e-9  # [1e-12 to 1e-7]
 
 
 ESTIMATE = Estimate()

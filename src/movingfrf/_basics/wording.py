@@ -1,4 +1,4 @@
-"""Numbers and settings of a result in words, for reading."""
+"""Numbers and lists in words, for reading."""
 
 from __future__ import annotations
 

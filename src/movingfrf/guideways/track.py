@@ -1,4 +1,4 @@
-"""Beams, foundations, and the track made of one of each."""
+"""The track, made of a beam and a foundation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The spectrum of a profile: its estimate, and the straight line in logarithms that ISO 8608 fits to it."""
+"""The straight line in logarithms that ISO 8608 fits to the spectrum of a profile."""
 
 from __future__ import annotations
 

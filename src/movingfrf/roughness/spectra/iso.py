@@ -1,4 +1,4 @@
-"""Roughness spectra: one-sided, over spatial frequency in cycles per metre."""
+"""The spectra and classes of ISO 8608, one-sided over spatial frequency in cycles per metre."""
 
 from __future__ import annotations
 
