@@ -9,7 +9,7 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.metrics.measures import assess, random_measures
-from movingfrf.results.labels import COUPLED, labelled
+from movingfrf.results.labels import labelled
 from tests.helpers import DAMPED
 
 PAVEMENT = DAMPED["euler_bernoulli_winkler"]
@@ -44,7 +44,7 @@ def travelled(
         "roughness": 0 * force,
     }
     attributes = {"speed": SPEED, "start": start, "time_step": STEP, "movingfrf": "test", "findings": "[]"}
-    return labelled(values, COUPLED, attributes)
+    return labelled(values, {"kind": "coupled", **attributes})
 
 
 def test_dynamic_load_coefficient():

@@ -99,7 +99,7 @@ def own(vehicle):
 
 
 def of(vehicle, omega=OMEGA):
-    return vehicle.dynamics().stiffness(omega)
+    return np.moveaxis(vehicle.dynamics().stiffness(omega), -1, 0)
 
 
 # Rigid contacts.

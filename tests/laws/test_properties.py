@@ -91,12 +91,12 @@ def test_half_car_at_its_contacts(parameters, omega):
     car = mf.half_car(**parameters)
     *_, at, tyres, _ = held_matrices(car)
     weight = GRAVITY * np.asarray(car.mass) @ np.asarray(car.vertical)
-    rest = car.dynamics().stiffness(np.zeros(1, complex))[0]
+    rest = car.dynamics().stiffness(np.zeros(1, complex))[..., 0]
     for motion in rigid_motions(car):
         work = motion @ weight
         assert abs(car.static_loads @ (at @ motion) - work) < 1e-9 * np.abs(weight).max() * 5
         assert np.abs(rest @ (at @ motion)).max() < 1e-8 * tyres.max()
-    found = car.dynamics().stiffness(np.array([omega + 0j]))[0]
+    found = car.dynamics().stiffness(np.array([omega + 0j]))[..., 0]
     assert np.abs(found - dynamic_stiffness(car, omega)).max() < 1e-8 * np.abs(found).max()
     assert np.abs(found - found.T).max() < 1e-8 * np.abs(found).max()
 

@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import movingfrf as mf
 from movingfrf.metrics.fatigue import METHODS
 from movingfrf.metrics.measures import random_measures
-from movingfrf.response.batches import solve_contacts
+from movingfrf.response.batches import solved
 from movingfrf.response.quadrature import PANELS, resolved
 from movingfrf.response.statistics import peak_factor
 from movingfrf.results.labels import RANDOM_QUANTITIES
@@ -254,9 +254,9 @@ def test_many_small_matrices_are_solved_by_one_thread(monkeypatch):
 
     def watched(*arguments):
         seen.extend(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
-        return solve_contacts(*arguments)
+        return solved(*arguments)
 
-    monkeypatch.setattr("movingfrf.response.solve.solve_contacts", watched)
+    monkeypatch.setattr("movingfrf.response.system.solved", watched)
     with threadpool_limits(limits=2):
         respond("three_axles", coherence=None)
     assert set(seen) == {1}

@@ -16,7 +16,7 @@ SLACK = QUARTER_TRUCK | {"suspension_stiffness": 1.5e6, "suspension_damping": 3e
 
 def count(road, vehicle, speed):
     system = joined(road, vehicle, speed)
-    return growing_vibrations(system, system.sample(along_the_axis(vehicle, speed)))
+    return growing_vibrations(system, system.at(along_the_axis(vehicle, speed)))
 
 
 def wheels(number, gap, damping):

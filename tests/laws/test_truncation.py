@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.response.line import SpectralGrid
+from movingfrf.response.line import Line
+from movingfrf.response.truncation import EVERYWHERE, Truncation
 from movingfrf.scenarios import forces
 from tests.helpers import DAMPED, HALF_TRUCK
 
@@ -42,23 +43,23 @@ def test_prescribed_loads_end_as_well_as_they_begin():
 
 @pytest.mark.parametrize("truncation", [10.0, 70.0, 490.0, 600.0])
 def test_compliance_falls_smoothly_from_one_to_nothing(truncation):
-    grid = SpectralGrid(samples=20_000, time_step=1e-3, truncation=truncation)
-    share = grid.compliance(slice(grid.size))
-    frequency = grid.omega().real / (2 * np.pi)
+    omega, cut = Line(samples=20_000, time_step=1e-3).omega(), Truncation(frequency=truncation)
+    share = cut.taper(omega)
+    frequency = omega.real / (2 * np.pi)
     assert (share[frequency <= truncation * (1 - 1e-9)] == 1.0).all()
     assert (share[frequency > 1.051 * truncation] == 0).all()
     assert (np.diff(share) <= 0).all()
     # Quintic: its steepest slope is 15/8 of the mean one.
     step = frequency[1] / (0.05 * truncation)
     assert np.abs(np.diff(share)).max() <= 15 / 8 * step * (1 + 1e-9)
-    assert abs(grid.untouched - np.sum(share == 1.0)) <= 1
-    assert abs(grid.kept - np.sum(share > 0)) <= 1
+    assert abs(cut.untouched(omega) - np.sum(share == 1.0)) <= 1
+    assert abs(cut.reach(omega) - np.sum(share > 0)) <= 1
 
 
 def test_without_a_truncation_nothing_is_touched():
-    grid = SpectralGrid(samples=1000, time_step=1e-3)
-    assert grid.untouched == grid.kept == grid.size
-    assert (grid.compliance(slice(5, 9)) == 1).all()
+    omega = Line(samples=1000, time_step=1e-3).omega()
+    assert EVERYWHERE.untouched(omega) == EVERYWHERE.reach(omega) == omega.size
+    assert (EVERYWHERE.taper(omega) == 1).all()
 
 
 def test_a_truncation_at_zero_is_a_rigid_road():

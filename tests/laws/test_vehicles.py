@@ -14,8 +14,8 @@ every_vehicle = pytest.mark.parametrize("name", VEHICLES)
 
 
 def at_contacts(vehicle, omega):
-    """Ask the package for the dynamic stiffness."""
-    return vehicle.dynamics().stiffness(np.asarray(omega, complex))
+    """Ask the package for the dynamic stiffness, shape (frequency, contact, contact)."""
+    return np.moveaxis(vehicle.dynamics().stiffness(np.asarray(omega, complex)), -1, 0)
 
 
 def tyre_scale(vehicle):

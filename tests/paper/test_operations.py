@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.response.line import SpectralGrid
+from movingfrf.response.line import Line
+from movingfrf.response.truncation import Truncation
 from movingfrf.studies.paper import operations
 from tests.helpers import DAMPED, difference
 
@@ -275,18 +276,20 @@ def test_moving_frf_is_four_products_per_frequency(positions, points, count):
     wanted = mf.moving_loads(
         TRACK, forces, positions, speed=10.0, time_step=step, observe=points, truncation=truncation
     ).deflection.values
-    grid = SpectralGrid(samples=samples, time_step=step, truncation=truncation, settling=samples * step)
-    kept = slice(grid.kept)
-    frf = TRACK.moving_frf(np.subtract.outer(points, positions), 10.0, grid.omega(kept))
-    frf = pairs(frf * grid.compliance(kept)[:, None, None])
-    spectra = pairs(grid.to_spectra(forces)[: grid.kept])
-    deflection = np.zeros((grid.kept, len(points)), complex)
+    line = Line(samples=samples, time_step=step, settling=samples * step)
+    cut = Truncation(frequency=truncation)
+    kept = cut.reach(line.omega())
+    omega = line.omega()[:kept]
+    frf = TRACK.moving_frf(np.subtract.outer(points, positions), 10.0, omega)
+    frf = pairs(frf * cut.taper(omega)[:, None, None])
+    spectra = pairs(line.spectra(forces.T).T[:kept])
+    deflection = np.zeros((kept, len(points)), complex)
     for (frequency, point, load), value in np.ndenumerate(frf):
         real, imaginary = times(value, spectra[frequency, load])
         deflection[frequency, point] += complex(float(real), float(imaginary))
-    assert difference(grid.to_histories(deflection).values, wanted) < 1e-12
-    assert 10 < grid.kept < grid.size
-    assert count() == operations.moving_frf(grid.kept, len(positions), len(points))
+    assert difference(line.records(deflection.T).values.T, wanted) < 1e-12
+    assert 10 < kept < line.size
+    assert count() == operations.moving_frf(kept, len(positions), len(points))
 
 
 def turn(share):

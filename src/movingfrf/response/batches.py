@@ -1,4 +1,4 @@
-"""Many small matrices, one per frequency: products, solutions, and how many at a time."""
+"""Many small matrices, one per frequency, frequency last: products, solutions, and how many at a time."""
 
 from __future__ import annotations
 
@@ -22,56 +22,73 @@ class Batch:
     entries: int = 2**18  # of the matrices of all of them: of many contacts, fewer frequencies [2**14 to 2**22]
     fewest: int = 16  # frequencies, of however many contacts [1 to 256]
 
+    def frequencies(self, entries: int) -> int:
+        """Frequencies to solve at a time with so many entries of a matrix at each."""
+        return max(min(self.most, self.entries // entries), self.fewest)
+
 
 BATCH = Batch()
 
 
-def chunk_for(contacts: int) -> int:
-    """Frequencies to solve at a time with so many contacts."""
-    return max(min(BATCH.most, BATCH.entries // contacts**2), BATCH.fewest)
-
-
-def unthreaded(contacts: int) -> AbstractContextManager[object]:
+def unthreaded(entries: int) -> AbstractContextManager[object]:
     """Keep LAPACK to one thread: many small matrices gain nothing by two, and lose tenfold if one has to wait."""
-    return threadpool_limits(limits=1) if contacts > 2 else nullcontext()
+    return threadpool_limits(limits=1) if entries > 4 else nullcontext()
 
 
-def solve_contacts(frf: ComplexArray, stiffness: ComplexArray, gap: ComplexArray) -> ComplexArray:
-    """Solve (I + D G) F = D R for each frequency.
+def applied(matrices: ComplexArray, columns: ComplexArray) -> ComplexArray:
+    """Multiply a matrix per frequency with columns.
 
     Parameters
     ----------
-    frf : ndarray, shape (frequency, contact, contact)
-        Moving FRF G [m/N].
-    stiffness : ndarray, shape (frequency, contact, contact)
-        Dynamic stiffness D of the vehicle [N/m].
-    gap : ndarray, shape (frequency, contact, case)
-        Elevation R under the contacts [m].
+    matrices : ndarray, shape (i, j, frequency)
+        The matrices.
+    columns : ndarray, shape (*case, j, frequency)
+        Columns, any number of them.
 
     Returns
     -------
-    ndarray, shape (frequency, contact, case)
-        Contact forces F [N].
+    ndarray, shape (*case, i, frequency)
+        Products.
     """
-    count = frf.shape[1]
-    system = np.eye(count) + matrix_product(stiffness, frf)
-    right = matrix_product(stiffness, gap)
+    if matrices.shape[1] > 2:
+        first = np.moveaxis(matrices, -1, 0), np.moveaxis(columns.reshape(-1, *columns.shape[-2:]), (2, 1), (0, 1))
+        product = np.matmul(*(np.ascontiguousarray(part) for part in first))
+        return np.moveaxis(product, (0, 1), (2, 1)).reshape(*columns.shape[:-2], *matrices.shape[::2])
+    # Up to two contacts the loops over i, j and cases are the short ones: let the processor loop over frequency.
+    return np.add.reduce([matrices[:, j] * columns[..., j, None, :] for j in range(matrices.shape[1])])
+
+
+def multiplied(left: ComplexArray, right: ComplexArray) -> ComplexArray:
+    """Multiply matrices per frequency, shapes (i, j, frequency) and (j, k, frequency)."""
+    return applied(left, right.swapaxes(0, 1)).swapaxes(0, 1)
+
+
+def solved(matrices: ComplexArray, right: ComplexArray) -> ComplexArray:
+    """Solve a linear system per frequency.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (j, j, frequency)
+        The matrices.
+    right : ndarray, shape (*case, j, frequency)
+        Right-hand sides, any number of them.
+
+    Returns
+    -------
+    ndarray, shape (*case, j, frequency)
+        Solutions.
+    """
+    count = len(matrices)
     if count == 1:
-        return right / system
+        return right / matrices[0]
     if count == 2:  # Cramer's rule: several times faster than LAPACK on batches of this size
-        (a, b), (c, d) = (system[:, row, :, None].swapaxes(0, 1) for row in range(2))
+        (a, b), (c, d) = matrices
         determinant = a * d - b * c
-        front, rear = right[:, 0], right[:, 1]
-        solution = np.empty((2, *front.shape[::-1]), complex).T.swapaxes(1, 2)
-        solution[:, 0] = (d * front - b * rear) / determinant
-        solution[:, 1] = (a * rear - c * front) / determinant
+        first, second = right[..., 0, :], right[..., 1, :]
+        solution = np.empty(right.shape, complex)
+        np.divide(d * first - b * second, determinant, out=solution[..., 0, :])
+        np.divide(a * second - c * first, determinant, out=solution[..., 1, :])
         return solution
-    return np.linalg.solve(system, right)
-
-
-def matrix_product(left: ComplexArray, right: ComplexArray) -> ComplexArray:
-    """Matrix product for each frequency, shapes (frequency, i, j) and (frequency, j, k)."""
-    if left.shape[1] > 2:
-        return left @ right
-    # Up to two contacts the loops over i, j and k are the short ones: let the processor loop over frequency.
-    return np.add.reduce([left[:, :, j, None] * right[:, j, None, :] for j in range(left.shape[2])])
+    columns = np.moveaxis(right.reshape(-1, *right.shape[-2:]), (2, 1), (0, 1))
+    found = np.linalg.solve(np.moveaxis(matrices, -1, 0), columns)
+    return np.moveaxis(found, (0, 1), (2, 1)).reshape(right.shape)

@@ -1,4 +1,4 @@
-"""From time to complex frequency and back: sign, scale, window, padding and truncation are decided here."""
+"""From time to complex frequency and back: sign, scale, window and padding are decided here."""
 
 from __future__ import annotations
 
@@ -29,9 +29,6 @@ class Transform:
     slope_fades: float = 0.05  # [0.02 to 0.1]
     times_its_scale: float = 12.0  # [12 to 16]
     lately: int = 4096  # [256 to 65 536]
-    # Share of the truncation over which the guideway stiffens beyond it. What a sharp cut discards would ring on
-    # and on, and the window raises what comes late.
-    stiffening: float = 0.05  # [a convention that users are told]
     # Channels transformed at a time: as many as a processor's vector holds numbers.
     together: int = 4  # [1 to 64: time only]
     # Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
@@ -48,12 +45,12 @@ DIFFERENCES = np.array([[25 / 12, -4.0, 3.0, -4 / 3, 1 / 4], [35 / 12, -26 / 3, 
 class Histories(NamedTuple):
     """Records, and what of each wraps around from the end of the padding to the start."""
 
-    values: FloatArray  # (time, channel)
-    wrapped: FloatArray  # (channel,)
+    values: FloatArray  # (*case, port, time)
+    wrapped: FloatArray  # (*case, port)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SpectralGrid:
+class Line:
     """A record in time and the complex frequencies that stand for it.
 
     X(ω) = ∫ x(t) e^{−iωt} dt, evaluated along ω − iη (exponential window, Kausel and Roësset 1992): the
@@ -65,23 +62,19 @@ class SpectralGrid:
         Samples of the record.
     time_step : float
         Step of the record [s].
-    truncation : float, optional
-        Frequency beyond which the guideway stiffens until, 5 % higher, it is rigid [Hz]; None keeps every
-        frequency.
     settling : float
         Time that the padding must leave, at least, for the response to die away [s].
 
     Examples
     --------
-    >>> grid = SpectralGrid(samples=1000, time_step=1e-3)
-    >>> history = np.sin(2 * np.pi * 5 * grid.time)[:, None] ** 3
-    >>> bool(np.allclose(grid.to_histories(grid.to_spectra(history)).values, history, atol=1e-12))
+    >>> line = Line(samples=1000, time_step=1e-3)
+    >>> record = np.sin(2 * np.pi * 5 * line.time) ** 3
+    >>> bool(np.allclose(line.records(line.spectra(record)).values, record, atol=1e-12))
     True
     """
 
     samples: int
     time_step: float
-    truncation: float | None = None
     settling: float = 0.0
 
     def __post_init__(self) -> None:
@@ -89,8 +82,6 @@ class SpectralGrid:
         with checking() as check:
             check.whole("samples", self.samples, least=1)
             check.positive("time_step", self.time_step, "s")
-            if self.truncation is not None:
-                check.not_negative("truncation", self.truncation, "Hz")
             check.not_negative("settling", self.settling, "s")
 
     @property
@@ -100,39 +91,19 @@ class SpectralGrid:
         return int(scipy.fft.next_fast_len(self.samples + padding, real=True))
 
     @property
+    def period(self) -> float:
+        """Duration of the padded record [s]."""
+        return self.padded * self.time_step
+
+    @property
     def decay(self) -> float:
         """Distance η of the line of evaluation from the real axis [rad/s]."""
-        return float(-np.log(TRANSFORM.wrap_around)) / (self.padded * self.time_step)
+        return float(-np.log(TRANSFORM.wrap_around)) / self.period
 
     @property
     def size(self) -> int:
         """Number of complex frequencies."""
         return self.padded // 2 + 1
-
-    @property
-    def untouched(self) -> int:
-        """Number of frequencies, from zero to the truncation, at which the guideway is what it is."""
-        return self._below(1.0)
-
-    @property
-    def kept(self) -> int:
-        """Number of frequencies, from zero, at which the guideway is solved for: those at which it is not rigid."""
-        return self._below(1.0 + TRANSFORM.stiffening)
-
-    def compliance(self, numbers: slice) -> FloatArray:
-        """Share of its compliance that the guideway has at some frequencies: 1 up to the truncation, then less."""
-        at = np.arange(*numbers.indices(self.size))
-        if self.truncation is None or not self.truncation:
-            return np.ones(at.size)
-        frequency, width = at / (self.padded * self.time_step), TRANSFORM.stiffening
-        return smooth_step((1.0 + width - frequency / self.truncation) / width)
-
-    def _below(self, share: float) -> int:
-        """Count frequencies from zero to so many times the truncation."""
-        if self.truncation is None:
-            return self.size
-        # The half makes the count independent of the rounding of a multiple of the frequency step.
-        return min(self.size, int(share * self.truncation * self.padded * self.time_step + 0.5) + 1)
 
     @property
     def time(self) -> FloatArray:
@@ -141,12 +112,12 @@ class SpectralGrid:
 
     def omega(self, numbers: IntArray | slice = slice(None)) -> ComplexArray:
         """Complex angular frequencies ω − iη [rad/s]: those of the given numbers, or all."""
-        step = 2 * np.pi / (self.padded * self.time_step)
+        step = 2 * np.pi / self.period
         if isinstance(numbers, slice):
             numbers = np.arange(*numbers.indices(self.size))
         return step * numbers - 1j * self.decay
 
-    def to_spectra(self, histories: FloatArray) -> ComplexArray:
+    def spectra(self, records: FloatArray) -> ComplexArray:
         """Transform records that are zero before their first sample.
 
         Past its end each record is continued: smoothly in value, slope and curvature, down to zero within the
@@ -154,42 +125,43 @@ class SpectralGrid:
 
         Parameters
         ----------
-        histories : ndarray, shape (time, channel)
+        records : ndarray, shape (*case, port, time)
             Records; not modified.
 
         Returns
         -------
-        ndarray, shape (frequency, channel)
+        ndarray, shape (*case, port, frequency)
             Spectra, in the unit of the record times second.
         """
-        spectra = np.empty((histories.shape[1], self.size), complex)
+        rows = records.reshape(-1, self.samples)
+        spectra = np.empty((len(rows), self.size), complex)
         window = self.time_step * np.exp(-self.decay * self.time_step * np.arange(self.padded))
         together = TRANSFORM.together
-        for first in range(0, len(spectra), together):
-            block = histories.T[first : first + together]
+        for first in range(0, len(rows), together):
+            block = rows[first : first + together]
             padded = np.empty((len(block), self.padded))
             padded[:, : self.samples] = block
-            for row, history in zip(padded, block, strict=True):
-                row[self.samples :] = self._continuation(history)
+            for row, record in zip(padded, block, strict=True):
+                row[self.samples :] = self._continuation(record)
             # A jump at t = 0 is centred there: half of its first sample lies before it.
             padded[:, 0] *= 0.5
             padded *= window
             np.fft.rfft(padded, out=spectra[first : first + together])
-        return spectra.T
+        return spectra.reshape(*records.shape[:-1], self.size)
 
     def scratch(self) -> NDArray[np.float64]:
-        """Memory for `to_histories` to work in: fresh pages cost more than a transform."""
+        """Memory for `records` to work in: fresh pages cost more than a transform."""
         return np.empty((TRANSFORM.together, self.padded))
 
-    def to_histories(
+    def records(
         self, spectra: ComplexArray, *, derivative: int = 0, scratch: NDArray[np.float64] | None = None
     ) -> Histories:
-        """Transform spectra, or their derivatives in time, back to records; the inverse of `to_spectra`.
+        """Transform spectra, or their derivatives in time, back to records; the inverse of `spectra`.
 
         Parameters
         ----------
-        spectra : ndarray, shape (frequency, channel)
-            Spectra along ω − iη; frequencies beyond the last row are zero.
+        spectra : ndarray, shape (*case, port, frequency)
+            Spectra along ω − iη; frequencies beyond the last one are zero.
         derivative : int
             Order of the derivative with respect to time.
         scratch : ndarray, optional
@@ -198,42 +170,43 @@ class SpectralGrid:
         Returns
         -------
         Histories
-            Records of shape (time, channel), and the largest value, as it wraps around, within a hundredth of the
-            period near its end (not at the very end, where the ripple that precedes a jump at t = 0 lies).
+            Records of shape (*case, port, time), and the largest value, as it wraps around, within a hundredth of
+            the period near its end (not at the very end, where the ripple that precedes a jump at t = 0 lies).
         """
-        histories = np.empty((spectra.shape[1], self.samples))
-        wrapped = np.empty(spectra.shape[1])
+        ports, rows = spectra.shape[:-1], spectra.reshape(-1, spectra.shape[-1])
+        values = np.empty((len(rows), self.samples))
+        wrapped = np.empty(len(rows))
         last = self.padded // 100 + 1
         memory = self.scratch() if scratch is None else scratch
-        factor = (1j * self.omega(slice(len(spectra)))) ** derivative if derivative else None
+        factor = (1j * self.omega(slice(rows.shape[1]))) ** derivative if derivative else None
         growth = np.exp(self.decay * self.time_step * np.arange(self.samples)) / self.time_step
-        for first in range(0, len(histories), TRANSFORM.together):
+        for first in range(0, len(rows), TRANSFORM.together):
             some = slice(first, first + TRANSFORM.together)
-            block = spectra.T[some] if factor is None else spectra.T[some] * factor
+            block = rows[some] if factor is None else rows[some] * factor
             periodic = np.fft.irfft(block, self.padded, out=memory[: len(block)])
-            np.multiply(periodic[:, : self.samples], growth, out=histories[some])
+            np.multiply(periodic[:, : self.samples], growth, out=values[some])
             wrapped[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / self.time_step
-        return Histories(histories.T, wrapped)
+        return Histories(values.reshape(*ports, self.samples), wrapped.reshape(ports))
 
-    def _continuation(self, history: FloatArray) -> FloatArray:
+    def _continuation(self, record: FloatArray) -> FloatArray:
         """Continue the record, so that neither value, slope nor curvature jumps."""
         length = self.padded - self.samples
         after = np.zeros(length)
-        level = history[-1]
+        level = record[-1]
         settle = max(int(TRANSFORM.level_fades * length), 1)
         after[:settle] = level * _fading(settle)
-        fade = min(self._memory(history), length)
+        fade = min(self._memory(record), length)
         taken = DIFFERENCES.shape[1]
         if self.samples >= taken and fade > 1:
-            latest = history[: -taken - 1 : -1]
+            latest = record[: -taken - 1 : -1]
             slope, curvature = (weights @ latest for weights in DIFFERENCES)
             ahead = np.arange(1.0, fade + 1)
             after[:fade] += (slope * ahead + 0.5 * curvature * ahead**2) * _fading(fade)
         return after
 
-    def _memory(self, history: FloatArray) -> int:
+    def _memory(self, record: FloatArray) -> int:
         """Count the samples over which slope and curvature fade: enough not to add frequencies."""
-        steps = np.diff(history[-TRANSFORM.lately :])
+        steps = np.diff(record[-TRANSFORM.lately :])
         bends = np.diff(steps)
         bend, step = float(bends @ bends), float(steps @ steps)
         longest = (self.padded - self.samples) * TRANSFORM.slope_fades

@@ -11,9 +11,11 @@ import movingfrf.results.findings as find
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway
-from movingfrf.response.batches import BATCH
-from movingfrf.response.line import SpectralGrid, require_record
-from movingfrf.results.labels import LOADED, labelled, provenance
+from movingfrf.response.line import Line, require_record
+from movingfrf.response.solve import solve
+from movingfrf.response.system import Prescribed
+from movingfrf.response.truncation import EVERYWHERE, Truncation
+from movingfrf.results.labels import attributes, labelled, turned
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,26 +94,23 @@ def moving_loads(
     # What settles here is the guideway, in a time that is short beside that of any vehicle.
     settling = len(forces) * time_step
     require_record(settling, settling, time_step, at.size + points.size)
-    grid = SpectralGrid(samples=len(forces), time_step=time_step, truncation=truncation, settling=settling)
-    spectra = grid.to_spectra(forces)
-    deflection = np.empty((points.size, grid.kept), complex).T
-    for first in range(0, grid.kept, BATCH.most):
-        last = min(first + BATCH.most, grid.kept)
-        some = slice(first, last)
-        frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(some))
-        frf = frf * grid.compliance(some)[:, None, None]
-        deflection[first:last] = (frf @ spectra[first:last, :, None])[:, :, 0]
-        progress("moving FRF", last / grid.kept)
+    line = Line(samples=len(forces), time_step=time_step, settling=settling)
+    system = Prescribed(guideway=guideway, loads=at, points=points, speed=speed)
+    cut = EVERYWHERE if truncation is None else Truncation(frequency=truncation)
+    # One case.
+    spectra, omega = line.spectra(forces.T)[None], line.omega()
+    reach = cut.reach(omega)
+    yielding = solve(system, omega[:reach], spectra[..., :reach], truncation=cut, progress=progress).deflection
     # Beyond the truncation every so-many-th frequency, 256 of them at most [a convention], tells how much is left
     # out.
-    stride = (grid.size - grid.untouched) // 256 + 1
-    beyond = np.arange(grid.untouched, grid.size, stride)
-    frf = guideway.moving_frf(points[:, None] - at, speed, grid.omega(beyond))
-    left_out = stride * (np.abs((frf @ spectra[beyond][:, :, None])[:, :, 0]) ** 2).sum(axis=0)
-    whole = (np.abs(deflection) ** 2).sum(axis=0) + left_out
+    first = cut.untouched(omega)
+    stride = (line.size - first) // 256 + 1
+    beyond = solve(system, omega[first::stride], spectra[..., first::stride]).deflection
+    left_out = stride * (np.abs(beyond) ** 2).sum(axis=-1)
+    whole = (np.abs(yielding) ** 2).sum(axis=-1) + left_out
     error = float(np.sqrt(np.divide(left_out, whole, out=np.zeros_like(whole), where=whole > 0).max()))
     progress("histories", 0.0)
-    response = grid.to_histories(deflection)
+    response = line.records(yielding)
     critical_speed = float(guideway.critical_speed)
     found = [
         *find.near_critical(abs(speed), critical_speed),
@@ -119,20 +118,21 @@ def moving_loads(
         *find.beyond_truncation(truncation or 0.0, error),
     ]
     values = {
-        "time": grid.time,
+        "time": line.time,
         "load": at,
         "point": points,
         "force": forces,
-        "deflection": response.values,
+        "deflection": turned(response.values[0]),
     }
-    attributes = {
-        **provenance("Response of a guideway to prescribed moving loads"),
-        "speed": float(speed),
-        "time_step": float(time_step),
-        "truncation": 0.5 / time_step if truncation is None else float(truncation),
-        "truncation_error": error,
-        "critical_speed": critical_speed,
-        "guideway": repr(guideway),
-        "findings": find.announced(found),
-    }
-    return labelled(values, LOADED, attributes)
+    settings = attributes(
+        "loaded",
+        "Response of a guideway to prescribed moving loads",
+        speed=speed,
+        time_step=time_step,
+        truncation=0.5 / time_step if truncation is None else truncation,
+        truncation_error=error,
+        critical_speed=critical_speed,
+        guideway=repr(guideway),
+        findings=found,
+    )
+    return labelled(values, settings)

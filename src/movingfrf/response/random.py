@@ -19,22 +19,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-import movingfrf.results.findings as find
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
 from movingfrf._basics.checks import Checks, SolveError, checking, shown
 from movingfrf._basics.progress import Progress, silent
-from movingfrf._basics.version import VERSION
 from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.metrics.comfort import WEIGHTING_OF
 from movingfrf.metrics.loads import load_coefficient
 from movingfrf.response.quadrature import Lines, Unresolved, resolved
-from movingfrf.response.solve import responses
-from movingfrf.response.stability import along_the_axis, require_stable
+from movingfrf.response.solve import solve
 from movingfrf.response.statistics import lift_off, lifting_off, peak_factor, spectral_rate
-from movingfrf.response.system import System, joined, steady_state
+from movingfrf.response.survey import survey
+from movingfrf.response.system import System, joined
 from movingfrf.response.transfer import BYTES_PER_VALUE, coordinates
 from movingfrf.results.findings import Finding
-from movingfrf.results.labels import RANDOM, RANDOM_QUANTITIES, labelled
+from movingfrf.results.labels import RANDOM_QUANTITIES, attributes, labelled, turned
+from movingfrf.roughness.excitation import Touch
 from movingfrf.roughness.spectra.coherence import Coherence
 from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
@@ -76,20 +75,19 @@ class _Road:
     def amplitudes(self, frequency: FloatArray) -> ComplexArray:
         """Elevation under the contacts, one case per independent part of the road [m/√Hz].
 
-        Shape (frequency, contact, case); the cases' products with their own conjugates add up to S_ij.
+        Shape (case, contact, frequency); the cases' products with their own conjugates add up to S_ij.
         """
         n = frequency / self.speed
-        delay = np.exp(2j * np.pi * np.outer(n, self.vehicle.positions))
-        size = np.sqrt(self.spectrum.density(n) / self.speed)[:, None] * self.vehicle.enveloping(2 * np.pi * n)
+        size = np.sqrt(self.spectrum.density(n) / self.speed)
         _, path = np.unique(self.vehicle.paths, return_inverse=True)
-        return (size * delay)[:, :, None] * self._factor(n)[:, path]
+        return size * Touch(**self.vehicle.touching).waves(2 * np.pi * n) * self._factor(n)[:, path]
 
     def _factor(self, spatial_frequency: FloatArray) -> FloatArray:
-        """L of γ = L Lᵀ, shape (frequency, path, case)."""
+        """L of γ = L Lᵀ, shape (case, path, frequency)."""
         paths = np.array(self.vehicle.paths)
         across = np.array([self.vehicle.across[paths == path].mean() for path in np.unique(paths)])
         if len(across) == 1:
-            return np.ones((spatial_frequency.size, 1, 1))
+            return np.ones((1, 1, spatial_frequency.size))
         if isinstance(self.coherence, float):
             same = np.where(np.eye(len(across), dtype=bool), 1.0, self.coherence)
             shared: FloatArray = np.broadcast_to(same, (spatial_frequency.size, *same.shape))
@@ -102,7 +100,7 @@ class _Road:
                 "coherence must be positive semidefinite over the paths of the vehicle, but at "
                 f"{n:.4g} cycle/m its matrix has the eigenvalue {values.min():.3g}: no road can have it"
             )
-        return vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
+        return np.transpose(vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :], (2, 1, 0))
 
 
 def random_response(
@@ -196,18 +194,17 @@ def random_response(
             check.refuse("frequency", f"must hold frequencies of at least zero [Hz], got {least}")
     system = joined(guideway, vehicle, speed)
     progress("steady state", 0.0)
-    steady = steady_state(system, system.sample(np.zeros(1, complex)))
-    require_stable(system, system.sample(along_the_axis(vehicle, speed)))
+    surveyed = survey(system)
+    steady = surveyed.steady
     densities = _densities(system, _Road(vehicle=vehicle, spectrum=spectrum, coherence=shared, speed=speed))
     progress("spectral densities", 0.0)
     lines = _resolved(densities, vehicle, _edges(spectrum, speed))
     statistics = _statistics(vehicle, lines, exposure)
     force_rms, crossing = statistics["contact_force_rms"], statistics["contact_force_crossing_rate"]
     lift_off_share, lift_off_rate = lift_off(steady.load, force_rms, crossing)
-    critical_speed = float(guideway.critical_speed)
     found = [
         *lifting_off(lift_off_share, lift_off_rate, exposure),
-        *find.near_critical(speed, critical_speed),
+        *surveyed.findings,
         *_at_the_end(lines, vehicle, spectrum),
     ]
     if wanted is None:
@@ -228,22 +225,22 @@ def random_response(
         # What does not move but for rounding is not felt either.
         "weighted_acceleration": np.where(statistics["acceleration_rms"] > 0, _weighted(vehicle, lines), 0.0),
     }
-    attributes: dict[str, str | float | int] = {
-        "title": "Stationary response of a vehicle and a guideway to a random road",
-        "movingfrf": VERSION,
-        "speed": float(speed),
-        "exposure": float(exposure),
-        "spectrum": repr(spectrum),
-        "coherence": repr(shared) if coherence is not None else "one path",
-        "lowest_frequency": float(spectrum.band[0] * speed),
-        "highest_frequency": float(spectrum.band[1] * speed),
-        "frequencies": lines.frequency.size,
-        "weightings": ", ".join(f"{name} for accelerations in {unit}/s2" for unit, name in WEIGHTING_OF.items()),
-        "critical_speed": critical_speed,
-        "guideway": repr(guideway),
-        "findings": find.announced(found),
-    }
-    return labelled(values, RANDOM, attributes)
+    settings = attributes(
+        "random",
+        "Stationary response of a vehicle and a guideway to a random road",
+        speed=speed,
+        exposure=exposure,
+        spectrum=repr(spectrum),
+        coherence=repr(shared) if coherence is not None else "one path",
+        lowest_frequency=spectrum.band[0] * speed,
+        highest_frequency=spectrum.band[1] * speed,
+        frequencies=lines.frequency.size,
+        weightings=", ".join(f"{name} for accelerations in {unit}/s2" for unit, name in WEIGHTING_OF.items()),
+        critical_speed=surveyed.critical_speed,
+        guideway=repr(guideway),
+        findings=found,
+    )
+    return labelled(values, settings)
 
 
 def _check_spectrum(check: Checks, spectrum: object) -> None:
@@ -311,11 +308,11 @@ def _densities(system: System, road: _Road) -> Callable[[FloatArray], FloatArray
     def densities(frequency: FloatArray) -> FloatArray:
         omega = 2 * np.pi * frequency
         roughness = road.amplitudes(frequency)
-        found = responses(system, omega + 0j, roughness)
+        found = solve(system, omega + 0j, roughness)
         force, deflection, motion, elevation = (
-            (part.real**2 + part.imag**2).sum(axis=2) for part in (*found, roughness)
+            (part.real**2 + part.imag**2).sum(axis=0) for part in (*found, roughness)
         )
-        return np.hstack([force, deflection, motion, omega[:, None] ** 4 * motion, elevation])
+        return turned(np.vstack([force, deflection, motion, omega**4 * motion, elevation]))
 
     return densities
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,13 +10,12 @@ import numpy as np
 import movingfrf.results.findings as find
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway
-from movingfrf.response.line import SpectralGrid, require_record
-from movingfrf.response.solve import couple, histories
-from movingfrf.response.stability import along_the_axis, require_stable
-from movingfrf.response.system import joined, steady_state
-from movingfrf.response.truncation import bands, first_negligible, guideway_influence, middles, truncation_error
-from movingfrf.results.labels import COUPLED, labelled, provenance
-from movingfrf.roughness.excitation import excite
+from movingfrf.response.line import Line, require_record
+from movingfrf.response.solve import solve
+from movingfrf.response.survey import survey
+from movingfrf.response.system import joined
+from movingfrf.results.labels import attributes, labelled, turned
+from movingfrf.roughness.excitation import Touch, excite
 from movingfrf.roughness.profile import Profile
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
@@ -113,86 +112,101 @@ def simulate(
     >>> dict(result.sizes)
     {'time': 2000, 'contact': 1, 'dof': 2}
     """
-    require_guideway(guideway)
-    require_vehicle(vehicle)
     journey = Journey(
         speed=speed, duration=duration, start=start, time_step=time_step, truncation=truncation, blend=blend
     )
-    grid = spectral_grid(journey, vehicle)
-    samples = journey.samples
+    return driven(guideway, vehicle, profile, journey, progress=progress)
+
+
+def driven(
+    guideway: Guideway, vehicle: Vehicle, profile: Profile, journey: Journey, *, progress: Progress = silent
+) -> xr.Dataset:
+    """Drive a vehicle over a rough road: `simulate`, for a journey.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    vehicle : Vehicle
+        The vehicle.
+    profile : Profile
+        Elevation of the road; must cover the journey of every contact.
+    journey : Journey
+        How the vehicle travels.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `simulate` returns it.
+
+    Raises
+    ------
+    ValueError
+        If the profile does not cover the journey, or memory does not hold the result.
+    SolveError
+        If vehicle and guideway are unstable together, or a result is not finite.
+    """
+    require_guideway(guideway)
+    require_vehicle(vehicle)
+    line = line_of(journey, vehicle)
     progress("profile", 0.0)
     excitation = excite(
         profile,
-        vehicle.positions,
-        vehicle.paths,
-        speed=speed,
-        samples=samples,
-        time_step=time_step,
-        start=start,
-        blend=blend,
+        Touch(**vehicle.touching),
+        start=journey.start,
+        distance=journey.distance,
+        blend=journey.blend,
     )
-    spectra = grid.to_spectra(excitation.roughness)
-    roughness = _enveloped(vehicle, spectra, speed, grid)
+    # One case.
+    seen = excitation.elevation(journey.travelled)[None]
+    roughness = line.spectra(seen)
 
     progress("steady state", 0.0)
-    system = joined(guideway, vehicle, speed)
-    starts = bands(grid)
-    at_rest, along_axis, in_bands = system.samples(
-        np.zeros(1, complex), along_the_axis(vehicle, speed), middles(starts, grid)
-    )
-    steady = steady_state(system, at_rest)
-    require_stable(system, along_axis)
-    part = guideway_influence(system, starts, in_bands, roughness)
-    if truncation is None:
-        kept = first_negligible(part, roughness)
-        grid = replace(grid, truncation=max(kept - 1, 0) / (grid.padded * time_step))
-    error = truncation_error(part, grid.untouched)
-
-    coupled = couple(system, roughness, grid=grid, progress=progress)
+    system = joined(guideway, vehicle, journey.speed)
+    surveyed = survey(system, line, roughness, journey.truncation)
+    response = solve(system, line.omega(), roughness, truncation=surveyed.truncation, progress=progress)
     progress("histories", 0.0)
-    response = histories(coupled, grid)
-    critical_speed = float(guideway.critical_speed)
-    seen = excitation.roughness if roughness is spectra else grid.to_histories(roughness).values
+    force, deflection, motion, acceleration = response.histories(line)
+    steady = surveyed.steady
+    total = steady.load[:, None] + force.values[0]
     found = [
-        *find.contact_lost(response.force.values + steady.load, time_step),
-        *find.near_critical(speed, critical_speed),
-        *find.not_decayed("vehicle's motion", response.motion.wrapped, response.motion.values),
-        *find.beyond_truncation(grid.truncation or 0.0, error),
-        *find.beyond_nyquist(roughness, time_step),
+        *find.contact_lost(turned(total), journey.time_step),
+        *surveyed.findings,
+        *find.not_decayed("vehicle's motion", motion.wrapped, motion.values),
+        *find.beyond_nyquist(roughness, journey.time_step),
     ]
-    deflection = response.deflection.values
-    deflection += steady.deflection
+    deflected = deflection.values[0]
+    deflected += steady.deflection[:, None]
     values = {
         **journey.coordinates(vehicle),
-        "contact_force": response.force.values,
+        "contact_force": turned(force.values[0]),
         "static_load": steady.load,
-        "deflection": deflection,
+        "deflection": turned(deflected),
         "static_deflection": steady.deflection,
-        "motion": response.motion.values,
-        "acceleration": response.acceleration.values,
-        "roughness": seen,
+        "motion": turned(motion.values[0]),
+        "acceleration": turned(acceleration.values[0]),
+        "roughness": turned(seen[0]),
     }
-    attributes = {
-        **provenance("Coupled response of a vehicle and a guideway"),
-        "speed": float(speed),
-        "duration": float(duration),
-        "start": float(start),
-        "time_step": float(time_step),
-        "truncation": float(grid.truncation or 0.0),
-        "truncation_error": error,
-        "blend": float(blend),
-        "datum": excitation.datum,
-        "critical_speed": critical_speed,
-        "guideway": repr(guideway),
-        "profile": profile.source,
-        "profile_steps": "\n".join(profile.steps),
-        "findings": find.announced(found),
-    }
-    return labelled(values, COUPLED, attributes)
+    settings = attributes(
+        "coupled",
+        "Coupled response of a vehicle and a guideway",
+        **journey.settings,
+        truncation=surveyed.truncation.frequency,
+        truncation_error=surveyed.truncation.error,
+        datum=excitation.datum,
+        critical_speed=surveyed.critical_speed,
+        guideway=repr(guideway),
+        profile=profile.source,
+        profile_steps="\n".join(profile.steps),
+        findings=found,
+    )
+    return labelled(values, settings)
 
 
-def spectral_grid(journey: Journey, vehicle: Vehicle) -> SpectralGrid:
-    """Frequencies that stand for the journey, with padding for the vehicle to settle in.
+def line_of(journey: Journey, vehicle: Vehicle) -> Line:
+    """Line of frequencies that stands for a journey, with padding for the vehicle to settle in.
 
     Parameters
     ----------
@@ -203,8 +217,8 @@ def spectral_grid(journey: Journey, vehicle: Vehicle) -> SpectralGrid:
 
     Returns
     -------
-    SpectralGrid
-        With the journey's samples and truncation.
+    Line
+        With the journey's samples.
 
     Raises
     ------
@@ -216,18 +230,4 @@ def spectral_grid(journey: Journey, vehicle: Vehicle) -> SpectralGrid:
     settling = min(-np.log(SETTLING.decayed) / slowest, longest) if slowest > 0 else longest
     channels = len(vehicle.contacts) + len(vehicle.dof_names)
     require_record(journey.duration, settling, journey.time_step, channels)
-    return SpectralGrid(
-        samples=journey.samples, time_step=journey.time_step, truncation=journey.truncation, settling=settling
-    )
-
-
-def _enveloped(vehicle: Vehicle, spectra: np.ndarray, speed: float, grid: SpectralGrid) -> np.ndarray:
-    """Roughness as contacts see it that do not touch the profile at one point only."""
-    seeing = [number for number, contact in enumerate(vehicle.contacts) if contact.envelops]
-    if not seeing:
-        return spectra
-    enveloped = spectra.copy(order="K")
-    wavenumber = grid.omega() / speed
-    for number in seeing:
-        enveloped[:, number] *= vehicle.contacts[number].enveloping(wavenumber)
-    return enveloped
+    return Line(samples=journey.samples, time_step=journey.time_step, settling=settling)

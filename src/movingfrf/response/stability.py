@@ -9,7 +9,7 @@ import numpy as np
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import SolveError
 from movingfrf.response.batches import unthreaded
-from movingfrf.response.system import Sample, System
+from movingfrf.response.system import System, Tables
 from movingfrf.vehicles.vehicle import Vehicle
 
 
@@ -114,7 +114,7 @@ def _around(pole: complex) -> FloatArray:
     return around
 
 
-def growing_vibrations(system: System, along_axis: Sample) -> int:
+def growing_vibrations(system: System, along_axis: Tables) -> int:
     """Count the vibrations of the coupled system that grow in time, conjugate pairs counted twice.
 
     Every zero of det(I + D G) with Im ω < 0 turns the phase of the determinant by one full circle along the
@@ -124,7 +124,7 @@ def growing_vibrations(system: System, along_axis: Sample) -> int:
     ----------
     system : System
         Vehicle and road.
-    along_axis : Sample
+    along_axis : Tables
         Both sides at the frequencies of `along_the_axis`.
 
     Returns
@@ -132,7 +132,7 @@ def growing_vibrations(system: System, along_axis: Sample) -> int:
     int
         Zero for a stable system.
     """
-    path, matrices = along_axis.omega, along_axis.matrices()
+    path, matrices = along_axis.omega, _stacked(along_axis)
     first, middle, last = path[:-1:2], path[1::2], path[2::2]
     at_first, at_middle, at_last = matrices[:-1:2], matrices[1::2], matrices[2::2]
     turned = 0.0
@@ -145,9 +145,14 @@ def growing_vibrations(system: System, along_axis: Sample) -> int:
         if not 0 < first.size < CONTOUR.most_intervals:
             break
         middle = 0.5 * (first + last)
-        at_middle = system.sample(middle).matrices()
+        at_middle = _stacked(system.at(middle))
     turned += np.angle(_factors(at_first, at_last)).sum()
     return max(round(-float(turned) / np.pi), 0)
+
+
+def _stacked(tables: Tables) -> ComplexArray:
+    """I + D G with the frequency first, as determinants and eigenvalues take it."""
+    return np.moveaxis(tables.matrices, -1, 0)
 
 
 def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
@@ -168,14 +173,14 @@ def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
     return np.linalg.eigvals(np.linalg.solve(before, after)).astype(complex)
 
 
-def require_stable(system: System, along_axis: Sample) -> None:
+def require_stable(system: System, along_axis: Tables) -> None:
     """Refuse a system that rings itself up: it has no steady state to vibrate about.
 
     Parameters
     ----------
     system : System
         Vehicle and road.
-    along_axis : Sample
+    along_axis : Tables
         Both sides at the frequencies of `along_the_axis`.
 
     Raises
@@ -183,7 +188,7 @@ def require_stable(system: System, along_axis: Sample) -> None:
     SolveError
         If a vibration grows, with its frequency and growth where they can be found.
     """
-    with unthreaded(len(system.vehicle.contacts)):
+    with unthreaded(system.entries):
         growing = growing_vibrations(system, along_axis)
     if growing:
         raise SolveError(
@@ -197,7 +202,7 @@ def _described(system: System) -> str:
     slowest, fastest = _extent(system.vehicle.poles)
     across = np.geomspace(0.1 * slowest, 10 * fastest, 80)
     omega = (across[:, None] * (1 - 1j * np.geomspace(1e-4, 2.0, 16))).ravel()
-    size = np.abs(np.linalg.det(system.sample(omega).matrices()))
+    size = np.abs(np.linalg.det(_stacked(system.at(omega))))
     zeros = [_zero(system, start) for start in omega[np.argsort(size)[: CONTOUR.searches]]]
     growing = [zero for zero in zeros if zero is not None]
     if not growing:
@@ -210,7 +215,7 @@ def _zero(system: System, start: complex) -> complex | None:
     """Zero of the determinant near a point of the lower half-plane, by the secant method; None if it leaves."""
     before, now = start, start * 1.001
     for _ in range(60):
-        at_before, at_now = np.linalg.det(system.sample(np.array([before, now])).matrices())
+        at_before, at_now = np.linalg.det(_stacked(system.at(np.array([before, now]))))
         if abs(at_now) < 1e-10:
             return now
         if at_now == at_before:

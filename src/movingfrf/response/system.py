@@ -1,8 +1,14 @@
-"""Guideway and vehicle at the contacts, and their steady travel on a smooth road."""
+"""What is solved, frequency by frequency: a vehicle on a guideway, or prescribed forces on one.
+
+Below contact j the vehicle is moved by d = w − r, the deflection (down) less the elevation (up). It answers with
+the dynamic force F = −D d, the guideway with w = G F. Hence (I + D G) F = D R: one small linear system per
+frequency, at the ports where the two meet. Axes are (*case, port, frequency).
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -10,41 +16,87 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf.guideways.guideway import Guideway
-from movingfrf.response.batches import matrix_product
+from movingfrf.response.batches import applied, multiplied, solved
+from movingfrf.response.line import Histories, Line
+from movingfrf.response.truncation import Truncation
 from movingfrf.vehicles.dynamics import Dynamics
 from movingfrf.vehicles.vehicle import Vehicle
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SteadyState:
-    """Travel on a smooth road: what is constant in time.
+@dataclass(frozen=True, slots=True, eq=False)
+class Tables:
+    """Both sides of the ports at some frequencies, whatever the roughness.
 
     Parameters
     ----------
-    load : ndarray, shape (contact,)
-        Contact forces [N].
-    deflection : ndarray, shape (contact,)
-        Deflection under each contact [m].
+    omega : ndarray, shape (frequency,)
+        Frequencies [rad/s].
+    frf : ndarray, shape (receiver, source, frequency)
+        Moving FRF G [m/N].
+    stiffness : ndarray, shape (port, port, frequency)
+        Dynamic stiffness D of the vehicle [N/m].
     """
 
-    load: FloatArray
-    deflection: FloatArray
+    omega: ComplexArray
+    frf: ComplexArray
+    stiffness: ComplexArray
 
+    def admitted(self, truncation: Truncation) -> Tables:
+        """Let the guideway stiffen beyond a truncation: a taper on G and nothing else."""
+        return replace(self, frf=self.frf * truncation.taper(self.omega))
 
-class Sample(NamedTuple):
-    """Both sides of the contacts at some frequencies."""
-
-    omega: ComplexArray  # (frequency,)
-    frf: ComplexArray  # (frequency, receiver, source) [m/N]
-    stiffness: ComplexArray  # (frequency, contact, contact) [N/m]
-
+    @property
     def matrices(self) -> ComplexArray:
-        """I + D G, shape (frequency, contact, contact): singular at the poles of the coupled system."""
-        matrices: ComplexArray = np.eye(self.frf.shape[1]) + matrix_product(self.stiffness, self.frf)
+        """I + D G, shape (port, port, frequency): singular at the poles of the coupled system."""
+        matrices = multiplied(self.stiffness, self.frf)
+        for port in range(len(matrices)):
+            matrices[port, port] += 1.0
         return matrices
 
+    def forces(self, roughness: ComplexArray) -> ComplexArray:
+        """Contact forces F = (I + D G)⁻¹ D R [N], both (*case, port, frequency)."""
+        return solved(self.matrices, applied(self.stiffness, roughness))
 
-@dataclass(frozen=True, slots=True, eq=False)
+    @property
+    def unit(self) -> ComplexArray:
+        """One case per port: a roughness of 1 m under that port alone, shape (port, port, frequency)."""
+        ports = len(self.stiffness)
+        return np.broadcast_to(np.eye(ports, dtype=complex)[:, :, None], (ports, ports, self.omega.size))
+
+    @property
+    def per_roughness(self) -> ComplexArray:
+        """S = (I + D G)⁻¹ D: contact force per roughness [N/m], shape (port, port, frequency)."""
+        return self.forces(self.unit).swapaxes(0, 1)
+
+
+class Response(NamedTuple):
+    """What the roughness adds to the steady state; each (*case, …, frequency), per case of roughness."""
+
+    force: ComplexArray  # contact
+    deflection: ComplexArray  # contact; beyond the truncation, where it is zero, left out
+    motion: ComplexArray  # degree of freedom
+
+    def histories(self, line: Line) -> CoupledHistories:
+        """Transform to time, along the line on which the response was solved."""
+        scratch = line.scratch()
+        return CoupledHistories(
+            force=line.records(self.force, scratch=scratch),
+            deflection=line.records(self.deflection, scratch=scratch),
+            motion=line.records(self.motion, scratch=scratch),
+            acceleration=line.records(self.motion, derivative=2, scratch=scratch),
+        )
+
+
+class CoupledHistories(NamedTuple):
+    """Histories of what the roughness adds to the steady state."""
+
+    force: Histories  # [N]
+    deflection: Histories  # [m]
+    motion: Histories  # [m or rad]
+    acceleration: Histories  # [m/s² or rad/s²]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class System:
     """A guideway and a vehicle that travels on it; made by `joined`.
 
@@ -57,7 +109,7 @@ class System:
     speed : float
         Speed [m/s].
     dynamics : Dynamics
-        What `vehicle.dynamics()` returns, computed once.
+        What `vehicle.dynamics()` returns.
     """
 
     guideway: Guideway
@@ -65,20 +117,112 @@ class System:
     speed: float
     dynamics: Dynamics
 
-    def sample(self, omega: ComplexArray) -> Sample:
+    @property
+    def words(self) -> str:
+        """What a message begins with that says what they have not."""
+        return "vehicle and guideway have"
+
+    @property
+    def entries(self) -> int:
+        """Entries of a matrix at one frequency."""
+        return self.dynamics.contacts**2
+
+    @property
+    def outputs(self) -> tuple[int, ...]:
+        """Rows of each part of a `Response`."""
+        return self.dynamics.contacts, self.dynamics.contacts, self.dynamics.dofs
+
+    def gathered(self, parts: Iterable[ComplexArray]) -> Response:
+        """Make a response of its parts."""
+        return Response(*parts)
+
+    def at(self, omega: ComplexArray) -> Tables:
         """Evaluate both sides at some frequencies [rad/s]."""
         frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
-        return Sample(omega, frf, self.dynamics.stiffness(omega))
+        return Tables(omega, np.moveaxis(frf, 0, -1), self.dynamics.stiffness(omega))
 
-    def samples(self, *omegas: ComplexArray) -> list[Sample]:
+    def at_each(self, *omegas: ComplexArray) -> list[Tables]:
         """Evaluate both sides at several sets of frequencies [rad/s] in one go."""
-        ends = np.cumsum([0, *(omega.size for omega in omegas)])
-        whole = self.sample(np.concatenate(omegas))
-        return [Sample(*(part[first:last] for part in whole)) for first, last in pairwise(ends)]
+        whole = self.at(np.concatenate(omegas))
+        ends = np.cumsum([0, *(omega.size for omega in omegas)]).tolist()
+        return [
+            Tables(*(part[..., first:last] for part in (whole.omega, whole.frf, whole.stiffness)))
+            for first, last in pairwise(ends)
+        ]
 
-    def motion(self, omega: ComplexArray, displacement: ComplexArray) -> ComplexArray:
-        """Motion of the vehicle (frequency, dof) that is displaced below its contacts (frequency, contact)."""
-        return self.dynamics.response(omega, displacement)[0]
+    def answer(self, omega: ComplexArray, roughness: ComplexArray, truncation: Truncation) -> Response:
+        """Solve for the response to roughness [m], shape (*case, contact, frequency), at ascending frequencies.
+
+        Where the guideway gives way the contact force solves (I + D G) F = D R; beyond the truncation G = 0. Either
+        way the vehicle is moved by d = G F − R and everything follows from d.
+        """
+        reach = truncation.reach(omega)
+        displacement = -roughness
+        tables = self.at(omega[:reach]).admitted(truncation) if reach else None
+        if tables is None:
+            motion, force = self.dynamics.response(omega, displacement)
+            return Response(force, roughness[..., :0], motion)
+        solved_force = tables.forces(roughness[..., :reach])
+        deflection = applied(tables.frf, solved_force)
+        displacement[..., :reach] += deflection
+        motion, force = self.dynamics.response(omega, displacement)
+        # Near a resonance of the vehicle between held contacts D d would lose digits that (I + D G)⁻¹ D R has.
+        force[..., :reach] = solved_force
+        return Response(force, deflection, motion)
+
+
+class Yielding(NamedTuple):
+    """What prescribed forces do."""
+
+    deflection: ComplexArray  # (*case, point, frequency)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Prescribed:
+    """A guideway under prescribed forces that travel along it, seen from points that do so too.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road.
+    loads, points : ndarray, shape (load,) and (point,)
+        Where forces act and deflections are observed, in the frame that travels along [m].
+    speed : float
+        Speed [m/s].
+    """
+
+    guideway: Guideway
+    loads: FloatArray
+    points: FloatArray
+    speed: float
+
+    @property
+    def words(self) -> str:
+        """What a message begins with that says what they have not."""
+        return "the guideway has"
+
+    @property
+    def entries(self) -> int:
+        """Entries of a matrix at one frequency."""
+        return self.loads.size * self.points.size
+
+    @property
+    def outputs(self) -> tuple[int, ...]:
+        """Rows of each part of a `Yielding`."""
+        return (self.points.size,)
+
+    def gathered(self, parts: Iterable[ComplexArray]) -> Yielding:
+        """Make an answer of its parts."""
+        return Yielding(*parts)
+
+    def answer(self, omega: ComplexArray, force: ComplexArray, truncation: Truncation) -> Yielding:
+        """Deflection G F [m] under forces [N], shape (*case, load, frequency), at ascending frequencies."""
+        reach = truncation.reach(omega)
+        if not reach:
+            return Yielding(np.zeros((*force.shape[:-2], self.points.size, 0), complex))
+        omega = omega[:reach]
+        frf = self.guideway.moving_frf(self.points[:, None] - self.loads, self.speed, omega)
+        return Yielding(applied(np.moveaxis(frf, 0, -1) * truncation.taper(omega), force[..., :reach]))
 
 
 def joined(guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
@@ -98,25 +242,4 @@ def joined(guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
     System
         The two together.
     """
-    return System(guideway, vehicle, speed, vehicle.dynamics())
-
-
-def steady_state(system: System, at_rest: Sample) -> SteadyState:
-    """Steady travel on a smooth road.
-
-    Parameters
-    ----------
-    system : System
-        Vehicle and road.
-    at_rest : Sample
-        Both sides at ω = 0.
-
-    Returns
-    -------
-    SteadyState
-        Loads and deflections. With more contacts than rigid motions the sag of the road redistributes the
-        weight: (I + D G) F₀ = F_s at ω = 0.
-    """
-    frf, stiffness = at_rest.frf[0].real, at_rest.stiffness[0].real
-    load = np.linalg.solve(np.eye(len(frf)) + stiffness @ frf, system.vehicle.static_loads)
-    return SteadyState(load=load, deflection=frf @ load)
+    return System(guideway=guideway, vehicle=vehicle, speed=speed, dynamics=vehicle.dynamics())

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
-from movingfrf._basics.version import VERSION
 from movingfrf.guideways.guideway import Guideway, require_guideway
-from movingfrf.response.solve import responses
-from movingfrf.response.stability import along_the_axis, require_stable
+from movingfrf.response.solve import solve
+from movingfrf.response.survey import survey
 from movingfrf.response.system import joined
-from movingfrf.results.labels import TRANSFER, labelled
+from movingfrf.results.labels import attributes, labelled, turned
+from movingfrf.roughness.excitation import Touch
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 if TYPE_CHECKING:
@@ -82,28 +81,28 @@ def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: A
         BYTES_PER_VALUE * lines.size * contacts * (contacts + dofs), f"a transfer over {lines.size} frequencies"
     )
     system = joined(guideway, vehicle, speed)
-    require_stable(system, system.sample(along_the_axis(vehicle, speed)))
-    unit = vehicle.enveloping(2 * np.pi * lines / speed)[:, :, None] * np.eye(contacts)
+    surveyed = survey(system)
     omega = 2 * np.pi * lines
-    found = responses(system, omega + 0j, unit + 0j)
-    critical_speed = float(guideway.critical_speed)
+    # One case per contact under which the road is rough.
+    unit = np.eye(contacts)[:, :, None] * Touch(**vehicle.touching).shares(omega / speed)
+    force, deflection, motion = map(turned, solve(system, omega + 0j, unit + 0j))
     values: dict[str, ArrayLike] = {
         **coordinates(vehicle, lines),
         "source": np.arange(contacts),
-        "contact_force": found.force,
-        "deflection": found.deflection,
-        "motion": found.motion,
-        "acceleration": -(omega[:, None, None] ** 2) * found.motion,
+        "contact_force": force,
+        "deflection": deflection,
+        "motion": motion,
+        "acceleration": -(omega[:, None, None] ** 2) * motion,
     }
-    attributes: dict[str, str | float | int] = {
-        "title": "Response of a vehicle and a guideway per unit of roughness",
-        "movingfrf": VERSION,
-        "speed": float(speed),
-        "critical_speed": critical_speed,
-        "guideway": repr(guideway),
-        "findings": find.announced(find.near_critical(speed, critical_speed)),
-    }
-    return labelled(values, TRANSFER, attributes)
+    settings = attributes(
+        "transfer",
+        "Response of a vehicle and a guideway per unit of roughness",
+        speed=speed,
+        critical_speed=surveyed.critical_speed,
+        guideway=repr(guideway),
+        findings=surveyed.findings,
+    )
+    return labelled(values, settings)
 
 
 def coordinates(vehicle: Vehicle, frequency: FloatArray) -> dict[str, ArrayLike]:

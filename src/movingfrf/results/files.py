@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from movingfrf._basics.arrays import finite
-from movingfrf.results.labels import COUPLED, LOADED, Measure, flaws
+from movingfrf.results.labels import SCHEMAS, Measure, flaws, kind_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -115,14 +115,15 @@ def load(file: Path) -> xr.Dataset:
             result: xr.Dataset = opened.load()
     except OSError:
         raise ValueError(f"{file}: is not a netCDF file, or a damaged one") from None
-    if "contact_force_density" in result:
+    kind = kind_of(result)
+    if kind == "random":
         raise ValueError(
             f"{file}: holds the response to a random road, which `movingfrf random` has measured already, see its "
             "summary.json; `movingfrf measure` takes histories, as `movingfrf run` writes them"
         )
-    if "movingfrf" not in result.attrs:
+    if "movingfrf" not in result.attrs or kind is None:
         raise ValueError(f"{file}: is no result of movingfrf")
-    schema = LOADED if "load" in result.dims else COUPLED
+    schema = SCHEMAS[kind]
     lacking = [name for name in ("speed", "time_step", "findings") if name not in result.attrs]
     found = [f"lacks the attribute {name}" for name in lacking]
     found += flaws(result, [name for name, label in schema.items() if not label.optional])

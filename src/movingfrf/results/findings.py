@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import sys
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
+from types import FrameType
 from typing import NamedTuple
 
 import numpy as np
@@ -66,8 +69,9 @@ def near_critical(speed: float, critical_speed: float) -> list[Finding]:
 
 
 def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Finding]:
-    """Compare what wraps around from the end of the padding (channel,) with records (time, channel)."""
-    size = np.sqrt([channel @ channel / len(channel) for channel in values.T])
+    """Compare what wraps around from the end of the padding (*case, port) with records (*case, port, time)."""
+    rows = values.reshape(-1, values.shape[-1])
+    size = np.sqrt([row @ row / row.size for row in rows]).reshape(wrapped.shape)
     left = np.divide(wrapped, size, out=np.zeros_like(size), where=size > 0).max(initial=0.0)
     if left <= THRESHOLDS.tolerated:
         return []
@@ -94,11 +98,12 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
 
 
 def beyond_nyquist(roughness: ComplexArray, time_step: float) -> list[Finding]:
-    """Roughness spectra, shape (frequency, contact), that reach up to the Nyquist frequency."""
-    squared = np.arange(len(roughness), dtype=float) ** 2
-    first = int(0.9 * len(roughness))
+    """Roughness spectra, shape (*case, contact, frequency), that reach up to the Nyquist frequency."""
+    lines = roughness.shape[-1]
+    squared = np.arange(lines, dtype=float) ** 2
+    first = int(0.9 * lines)
     share = 0.0
-    for spectrum in roughness.T:
+    for spectrum in roughness.reshape(-1, lines):
         energy = (spectrum.real**2 + spectrum.imag**2) * squared
         if energy.any():
             share = max(share, float(np.sqrt(energy[first:].sum() / energy.sum())))
@@ -114,8 +119,13 @@ def beyond_nyquist(roughness: ComplexArray, time_step: float) -> list[Finding]:
     ]
 
 
-def announced(found: list[Finding]) -> str:
-    """Warn of every finding and return them all as the JSON text that a result carries."""
+def announced(found: Iterable[Finding]) -> str:
+    """Warn of every finding, at the line that called the package, and return them all as JSON text."""
+    level = 1
+    frame: FrameType | None = sys._getframe()
+    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "movingfrf":
+        level, frame = level + 1, frame.f_back
+    found = list(found)
     for finding in found:
-        warnings.warn(finding.message, ValidityWarning, stacklevel=3)
+        warnings.warn(finding.message, ValidityWarning, stacklevel=level)
     return json.dumps([finding._asdict() for finding in found])

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.version import VERSION
 from movingfrf._basics.wording import plain
+from movingfrf.results.findings import Finding, announced
 
 if TYPE_CHECKING:
     import xarray as xr
+
+Values = TypeVar("Values", FloatArray, ComplexArray)
 
 
 class Label(NamedTuple):
@@ -110,19 +114,94 @@ for _name, (_place, _units, _words) in RANDOM_QUANTITIES.items():
     RANDOM |= _random_labels(_name, _place, _units, _words)
 
 
-def labelled(
-    values: Mapping[str, ArrayLike], schema: Mapping[str, Label], attributes: Mapping[str, str | float | int]
-) -> xr.Dataset:
+# Kind of a result, as its attribute says it → names, dimensions and units of its variables.
+SCHEMAS: dict[str, dict[str, Label]] = {
+    "coupled": COUPLED,
+    "loaded": LOADED,
+    "transfer": TRANSFER,
+    "random": RANDOM,
+}
+
+
+def attributes(
+    kind: str, title: str, *, findings: Iterable[Finding] = (), **settings: str | float
+) -> dict[str, str | float | int]:
+    """Say what a result is, which version made it and how; and warn of what is to be known about it.
+
+    Parameters
+    ----------
+    kind : str
+        Key of `SCHEMAS`.
+    title : str
+        What the result is, in words.
+    findings : iterable of Finding
+        What a user should know.
+    **settings : str, int or float
+        How it was made: text or numbers only, nothing else survives netCDF.
+
+    Returns
+    -------
+    dict
+        Attributes of the Dataset.
+
+    Warns
+    -----
+    ValidityWarning
+        Of every finding.
+    """
+    plain_settings = {
+        name: value if isinstance(value, str | int) else float(value) for name, value in settings.items()
+    }
+    return {
+        "title": title,
+        "kind": kind,
+        "movingfrf": VERSION,
+        **plain_settings,
+        "findings": announced(findings),
+    }
+
+
+def kind_of(result: xr.Dataset) -> str | None:
+    """Say what kind of result a Dataset is; None if it is none.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        Anything.
+
+    Returns
+    -------
+    str or None
+        Key of `SCHEMAS`. Results of version 0.1 do not say it themselves; their variables do.
+    """
+    said = getattr(result, "attrs", {}).get("kind")
+    if said is not None:
+        return str(said) if said in SCHEMAS else None
+    variables = getattr(result, "variables", {})
+    marks = {"random": "contact_force_density", "transfer": "source", "coupled": "contact_force", "loaded": "force"}
+    return next((kind for kind, mark in marks.items() if mark in variables), None)
+
+
+def turned(values: Values) -> Values:
+    """Turn an array of the core, (*case, port, frequency or time), into one of a result, which leads with these.
+
+    Examples
+    --------
+    >>> turned(np.zeros((3, 2, 100))).shape
+    (100, 2, 3)
+    """
+    return values.T
+
+
+def labelled(values: Mapping[str, ArrayLike], attributes: Mapping[str, str | float | int]) -> xr.Dataset:
     """Make the Dataset of a result.
 
     Parameters
     ----------
     values : mapping of str to array_like
-        Arrays by their name in the schema.
-    schema : mapping of str to Label
-        `COUPLED`, `LOADED`, `TRANSFER` or `RANDOM`.
+        Arrays by their name in the schema of the result's kind.
     attributes : mapping of str to str, float or int
-        Attributes of the Dataset, text or numbers only: nothing else survives netCDF.
+        What `attributes` returned.
 
     Returns
     -------
@@ -131,6 +210,7 @@ def labelled(
     """
     import xarray as xr
 
+    schema = SCHEMAS[str(attributes["kind"])]
     data: dict[str, xr.Variable] = {}
     coordinates: dict[str, xr.Variable] = {}
     for name, value in values.items():
@@ -201,8 +281,3 @@ class Measure(NamedTuple):
     units: str
     standard: str = ""  # the standard or the source that defines it, where the name alone does not
     note: str = ""  # what the standard makes of the value, or why there is none (nan)
-
-
-def provenance(title: str) -> dict[str, str | float | int]:
-    """Say what a result is and which version of the package made it."""
-    return {"title": title, "movingfrf": VERSION}

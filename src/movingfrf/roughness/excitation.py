@@ -1,97 +1,224 @@
-"""What each contact sees of a profile while it travels."""
+"""What contacts that travel together see of a road: in space, hence in time, and wave by wave.
+
+A contact at the distance x sees σ(x) · (E[r](x) − r₀): the elevation r, averaged over its footprint at both of its
+cams (E), about the datum r₀, and blended in by σ, which is 0 up to where the foremost contact starts and 1 from
+`blend` metres on, so that every contact meets the same road. Its rate of change is v times the slope of that. Of a
+wave e^{iκx} the average leaves the share `enveloping`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.enveloping import enveloping
 from movingfrf._basics.smooth import smooth_step, smooth_step_slope
 from movingfrf.roughness.profile import SLACK, Profile
 
-
-class Excitation(NamedTuple):
-    """Elevation under each contact over time, and the datum that was subtracted."""
-
-    roughness: FloatArray  # (time, contact) [m]
-    datum: float  # [m]
-    rate: FloatArray | None = None  # (time, contact) [m/s], where it was asked for
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 
-def excite(
-    profile: Profile,
-    positions: FloatArray,
-    paths: Sequence[int],
-    *,
-    speed: float,
-    samples: int,
-    time_step: float,
-    start: float,
-    blend: float,
-    rate: bool = False,
-) -> Excitation:
-    """Sample the profile under each contact, at the contact's own position.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Touch:
+    """Contacts that travel together, and what of the road each of them touches.
 
-    The elevation at the foremost contact's start is the datum, each path's own. Up to that point the road counts
-    as flat and within `blend` metres after it the profile sets in, so that every contact meets the same road.
+    Parameters
+    ----------
+    positions : ndarray, shape (contact,)
+        Ahead of the reference point [m].
+    paths : sequence of int, length contact
+        Path of the profile that each contact follows.
+    footprints : ndarray, shape (contact,)
+        Length over which each contact averages the profile [m].
+    cams : ndarray, shape (contact,)
+        Distance between the two points whose mean height it follows [m].
+    """
+
+    positions: FloatArray
+    paths: Sequence[int]
+    footprints: FloatArray
+    cams: FloatArray
+
+    def shares(self, wavenumber: FloatArray) -> FloatArray:
+        """Share of a wave of the profile [rad/m] that each contact follows, shape (contact, wave)."""
+        each = zip(self.footprints, self.cams, strict=True)
+        return np.stack([enveloping(wavenumber, footprint, cams) for footprint, cams in each])
+
+    def waves(self, wavenumber: FloatArray) -> ComplexArray:
+        """Give what each contact sees of a wave e^{iκx}, the reference point at x = 0; shape (contact, wave)."""
+        return self.shares(wavenumber) * np.exp(1j * np.outer(self.positions, wavenumber))
+
+
+@dataclass(frozen=True, eq=False)
+class _Along:
+    """One path about its datum, going straight on beyond both ends."""
+
+    datum: float
+    level: PPoly
+
+    @cached_property
+    def slope(self) -> PPoly:
+        """Slope of the level."""
+        return self.level.derivative()
+
+    @cached_property
+    def area(self) -> PPoly:
+        """Area under the level; of long profiles it takes memory, so that only footprints ask for it."""
+        return self.level.antiderivative()
+
+    @classmethod
+    def of(cls, profile: Profile, path: int, datum_at: float) -> _Along:
+        """Prepare one path of a profile."""
+        from scipy.interpolate import PPoly
+
+        spline = profile.along(path)
+        datum = float(spline(datum_at))
+        ends = spline.x[[0, -1]]
+        (low, high), (falling, rising) = spline(ends) - datum, spline(ends, 1)
+        pieces = np.zeros((4, spline.x.size + 1))
+        pieces[:, 1:-1] = spline.c
+        pieces[3, 1:-1] -= datum
+        pieces[2:, 0], pieces[2:, -1] = (falling, low - falling), (rising, high)
+        level = PPoly.construct_fast(pieces, np.r_[ends[0] - 1.0, spline.x, ends[1] + 1.0])
+        return cls(datum, level)
+
+    def seen(self, distance: FloatArray, footprint: float, cams: float) -> FloatArray:
+        """Average elevation about the datum [m]."""
+        return _averaged(self.level, lambda: self.area, distance, footprint, cams)
+
+    def rising(self, distance: FloatArray, footprint: float, cams: float) -> FloatArray:
+        """Average slope [m/m]."""
+        return _averaged(self.slope, lambda: self.level, distance, footprint, cams)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Excitation:
+    """A road as contacts see it that travel along it; made by `excite`.
+
+    Parameters
+    ----------
+    touch : Touch
+        The contacts.
+    along : dict of int to _Along
+        The paths they follow.
+    start : float
+        Distance of the reference point before it has travelled [m].
+    blend : float
+        Length over which the profile sets in [m]; 0 leaves it as it is.
+    """
+
+    touch: Touch
+    along: dict[int, _Along]
+    start: float
+    blend: float
+
+    @property
+    def datum(self) -> float:
+        """Elevation at the foremost contact's start, on its path [m]."""
+        return self.along[self.touch.paths[int(self.touch.positions.argmax())]].datum
+
+    def elevation(self, travelled: FloatArray) -> FloatArray:
+        """Elevation that each contact sees, about the datum of its path.
+
+        Parameters
+        ----------
+        travelled : ndarray, shape (time,)
+            Distances travelled [m], ascending.
+
+        Returns
+        -------
+        ndarray, shape (contact, time)
+            Elevation [m], positive up.
+        """
+        seen = np.empty((self.touch.positions.size, travelled.size))
+        for row, along, distance, touched, setting_in in self._each(travelled):
+            seen[row] = along.seen(distance, *touched)
+            seen[row, : setting_in.size] *= smooth_step(setting_in)
+        return seen
+
+    def rate(self, travelled: FloatArray, speed: float) -> FloatArray:
+        """Rate of change of the elevation that each contact sees, as for `elevation` [m/s]."""
+        rate = np.empty((self.touch.positions.size, travelled.size))
+        for row, along, distance, touched, setting_in in self._each(travelled):
+            rising = along.rising(distance, *touched)
+            blending = setting_in.size
+            rising[:blending] *= smooth_step(setting_in)
+            if blending:
+                early = along.seen(distance[:blending], *touched)
+                rising[:blending] += early * smooth_step_slope(setting_in) / self.blend
+            np.multiply(rising, speed, out=rate[row])
+        return rate
+
+    def _each(
+        self, travelled: FloatArray
+    ) -> Iterator[tuple[int, _Along, FloatArray, tuple[float, float], FloatArray]]:
+        """Go through the contacts: path, distances, what is touched, how far the profile has set in at first."""
+        touch = self.touch
+        foremost = self.start + touch.positions.max()
+        for row, (position, path) in enumerate(zip(touch.positions, touch.paths, strict=True)):
+            distance = travelled + (self.start + position)
+            blending = int(np.searchsorted(distance, foremost + self.blend)) if self.blend else 0
+            setting_in = (distance[:blending] - foremost) / self.blend if self.blend else distance[:0]
+            yield row, self.along[path], distance, (touch.footprints[row], touch.cams[row]), setting_in
+
+
+def excite(profile: Profile, touch: Touch, *, start: float, distance: float, blend: float) -> Excitation:
+    """Let contacts travel along a profile.
+
+    The elevation at the foremost contact's start is the datum, each path's own. A footprint or a cam that reaches
+    beyond an end of the profile finds it going straight on there.
 
     Parameters
     ----------
     profile : Profile
         The road.
-    positions : ndarray, shape (contact,)
-        Contacts ahead of the vehicle's reference point [m].
-    paths : sequence of int, length contact
-        Path of the profile that each contact follows.
-    speed : float
-        Speed [m/s].
-    samples : int
-        Number of samples in time.
-    time_step : float
-        Step in time [s].
+    touch : Touch
+        The contacts.
     start : float
         Distance of the reference point at t = 0 [m].
+    distance : float
+        How far it travels [m].
     blend : float
         Length over which the profile sets in [m]; 0 leaves the profile as it is.
-    rate : bool
-        Whether the rate of change ṙ = v r′ is wanted as well.
 
     Returns
     -------
     Excitation
-        Roughness [m], positive up, the datum of the foremost contact's path [m], and the rate [m/s] if wanted.
+        To be asked at any distance travelled.
 
     Raises
     ------
     ValueError
         If the profile does not cover the journey or lacks a path.
     """
-    foremost = start + positions.max()
-    require_cover(profile, start + positions.min(), foremost + speed * time_step * samples, paths)
-    elevation = {path: profile.along(path) for path in set(paths)}
-    datums = {path: float(along(np.array(foremost))) for path, along in elevation.items()}
-    slope = {path: along.derivative() for path, along in elevation.items()} if rate else {}
-    roughness = np.empty((len(paths), samples))
-    rates = np.empty((len(paths), samples)) if rate else None
-    travelled = speed * time_step * np.arange(samples)
-    for contact, (position, path) in enumerate(zip(positions, paths, strict=True)):
-        distance = travelled + (start + position)
-        seen = elevation[path](distance)
-        seen -= datums[path]
-        blending = int(np.searchsorted(distance, foremost + blend)) if blend else 0
-        setting_in = (distance[:blending] - foremost) / blend if blend else distance[:0]
-        if rates is not None:
-            rising = slope[path](distance)
-            rising[:blending] *= smooth_step(setting_in)
-            if blend:
-                rising[:blending] += seen[:blending] * smooth_step_slope(setting_in) / blend
-            rates[contact] = speed * rising
-        seen[:blending] *= smooth_step(setting_in)
-        roughness[contact] = seen
-    datum = datums[paths[int(positions.argmax())]]
-    return Excitation(roughness.T, datum, None if rates is None else rates.T)
+    foremost = start + touch.positions.max()
+    require_cover(profile, start + touch.positions.min(), foremost + distance, touch.paths)
+    # A profile without columns is the same for all paths.
+    column = {path: 0 if profile.same_across else path for path in touch.paths}
+    known = {path: _Along.of(profile, path, foremost) for path in set(column.values())}
+    along = {path: known[column[path]] for path in column}
+    return Excitation(touch=touch, along=along, start=start, blend=blend)
+
+
+def _averaged(
+    of: PPoly, integral: Callable[[], PPoly], distance: FloatArray, footprint: float, cams: float
+) -> FloatArray:
+    """Mean of a function over a footprint, at both cams."""
+    if cams:
+        apart = (distance - 0.5 * cams, distance + 0.5 * cams)
+        behind, ahead = (_averaged(of, integral, at, footprint, 0.0) for at in apart)
+        return 0.5 * (behind + ahead)
+    if not footprint:
+        found: FloatArray = of(distance)
+        return found
+    area, half = integral(), 0.5 * footprint
+    return (area(distance + half) - area(distance - half)) / footprint
 
 
 def require_cover(profile: Profile, first: float, last: float, paths: Sequence[int]) -> None:

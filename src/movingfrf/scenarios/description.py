@@ -10,9 +10,11 @@ import numpy as np
 from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.welch import welch
-from movingfrf.response.line import TRANSFORM, SpectralGrid
-from movingfrf.response.simulation import spectral_grid
-from movingfrf.response.system import joined, steady_state
+from movingfrf.response.line import TRANSFORM, Line
+from movingfrf.response.simulation import line_of
+from movingfrf.response.survey import survey
+from movingfrf.response.system import joined
+from movingfrf.response.truncation import EVERYWHERE, Truncation
 from movingfrf.results.findings import near_critical
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
@@ -105,8 +107,7 @@ def _guideway(scenario: Scenario) -> list[tuple[str, str]]:
 
 def _steady_contacts(scenario: Scenario) -> list[tuple[str, str]]:
     assert scenario.vehicle is not None
-    system = joined(scenario.guideway, scenario.vehicle, scenario.journey.speed)
-    steady = steady_state(system, system.sample(np.zeros(1, complex)))
+    steady = survey(joined(scenario.guideway, scenario.vehicle, scenario.journey.speed)).steady
     return _contacts(scenario.vehicle, steady.load, steady.deflection)
 
 
@@ -237,18 +238,19 @@ def _loads(scenario: Scenario) -> list[tuple[str, str]]:
 def _run(scenario: Scenario) -> list[tuple[str, str]]:
     journey = scenario.journey
     if scenario.vehicle is not None:
-        grid = spectral_grid(journey, scenario.vehicle)
+        line = line_of(journey, scenario.vehicle)
         channels = len(scenario.vehicle.contacts) + len(scenario.vehicle.dof_names)
     else:
         assert scenario.loads is not None
-        grid = SpectralGrid(samples=journey.samples, time_step=journey.time_step, truncation=journey.truncation)
+        line = Line(samples=journey.samples, time_step=journey.time_step)
         channels = len(scenario.loads.positions) + len(scenario.loads.observe)
-    memory = TRANSFORM.bytes_per_sample * channels * grid.padded
-    kept = f"{grid.kept} of them with the road" if journey.truncation is not None else "the truncation is found"
+    memory = TRANSFORM.bytes_per_sample * channels * line.padded
+    cut = EVERYWHERE if journey.truncation is None else Truncation(frequency=journey.truncation)
+    kept = "the truncation is found" if cut is EVERYWHERE else f"{cut.reach(line.omega())} of them with the road"
     return [
         ("speed", f"{journey.speed:g} m/s ({3.6 * journey.speed:g} km/h)"),
         ("travel", f"{journey.duration:g} s over {journey.speed * journey.duration:g} m"),
         ("time steps", f"{journey.samples} of {journey.time_step:g} s"),
-        ("frequencies", f"{grid.size} up to {0.5 / journey.time_step:g} Hz, {kept}"),
+        ("frequencies", f"{line.size} up to {0.5 / journey.time_step:g} Hz, {kept}"),
         ("memory", f"about {memory / 2**20:.3g} MiB"),
     ]

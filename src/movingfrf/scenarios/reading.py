@@ -11,7 +11,7 @@ from typing import Any
 
 from movingfrf._basics.checks import Fault, ParameterError, nearest, shown
 from movingfrf.response.line import require_record
-from movingfrf.response.simulation import spectral_grid
+from movingfrf.response.simulation import line_of
 from movingfrf.roughness.excitation import require_cover
 from movingfrf.scenarios.kinds import DEFAULT_KIND, KINDS, TABLE_LISTS, TABLES
 from movingfrf.scenarios.scenario import Scenario, ScenarioError
@@ -165,7 +165,7 @@ class _Builder:
         interval = (0.0, 1.0)
         if journey is not None and vehicle is not None:
             interval = journey.interval(vehicle)
-            if self._attempt("run:", lambda: spectral_grid(journey, vehicle)) is False:
+            if self._attempt("run:", lambda: line_of(journey, vehicle)) is False:
                 return None
         road = self.section(tables, "roughness", "roughness", interval=interval)
         if vehicle is not None and road is not None and journey is not None:

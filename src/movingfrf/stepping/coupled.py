@@ -13,9 +13,8 @@ import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import SolveError, checking
 from movingfrf._basics.progress import Progress, silent
-from movingfrf._basics.version import VERSION
-from movingfrf.results.labels import COUPLED, labelled
-from movingfrf.roughness.excitation import Excitation, excite
+from movingfrf.results.labels import attributes, labelled
+from movingfrf.roughness.excitation import Touch, excite
 from movingfrf.roughness.profile import Profile
 from movingfrf.stepping.exchange import SOLVED, Iteration
 from movingfrf.stepping.finite_guideway import FiniteGuideway
@@ -315,7 +314,7 @@ def prepared_journey(
                 f"{places.tolist()} m",
             )
         positions = journey.start * (not guideway.travels) + vehicle.positions
-        before, after = -journey.speed * run_in, journey.speed * journey.time_step * journey.samples
+        before, after = -journey.speed * run_in, journey.distance
         # A guideway that travels along follows element by element.
         require_on_guideway(
             check, guideway, positions, (0.0, guideway.spacing) if guideway.travels else (before, after)
@@ -340,13 +339,12 @@ def prepared_journey(
         iteration=iteration,
         compiled=compiled,
     )
-    excitation = seen_in_time(profile, vehicle, journey)
+    seen = seen_in_time(profile, vehicle, journey)
     run_in_steps = round(run_in / journey.time_step)
     steady, state = steady_travel(march, vehicle, run_in_steps, progress)
     loads = np.zeros((1, positions.size)) if superposed else vehicle.static_loads[None]
     state = march.at_rest() if superposed else state
-    roughness, rate = excitation.roughness, excitation.rate
-    assert rate is not None
+    roughness, rate = seen.roughness, seen.rate
     march.begun(state, roughness[0], rate[0], loads[0])
     march.prepare()
 
@@ -361,23 +359,17 @@ def prepared_journey(
             force += vehicle.static_loads - steady.load
             motion -= steady.motion
         name = "separate iterative method (SIM)" if iteration.tolerance else "coupled method (CDFM)"
-        attributes: dict[str, str | float | int] = {
-            "title": f"Coupled response of a vehicle and a finite road: {name}",
-            "movingfrf": VERSION,
-            "speed": float(journey.speed),
-            "duration": float(journey.duration),
-            "start": float(journey.start),
-            "time_step": float(journey.time_step),
-            "blend": float(journey.blend),
-            "datum": excitation.datum,
-            "scheme": repr(row),
-            "road_dofs": guideway.dofs,
-            "road_spacing": float(guideway.spacing),
-            "iterations": trace.iterations,
-            "findings": find.announced(
-                [*steady.findings, *find.contact_lost(force + steady.load, journey.time_step)]
-            ),
-        }
+        settings = attributes(
+            "coupled",
+            f"Coupled response of a vehicle and a finite road: {name}",
+            **journey.settings,
+            datum=seen.datum,
+            scheme=repr(row),
+            road_dofs=guideway.dofs,
+            road_spacing=guideway.spacing,
+            iterations=trace.iterations,
+            findings=[*steady.findings, *find.contact_lost(force + steady.load, journey.time_step)],
+        )
         values = {
             "contact_force": force,
             "static_load": steady.load,
@@ -385,17 +377,25 @@ def prepared_journey(
             "static_deflection": steady.deflection,
             "motion": motion,
             "acceleration": trace.acceleration,
-            "roughness": excitation.roughness,
+            "roughness": roughness,
         }
         if places.size:
             values |= {"place": places, "place_deflection": trace.observed}
-        return labelled({**journey.coordinates(vehicle), **values}, COUPLED, attributes)
+        return labelled({**journey.coordinates(vehicle), **values}, settings)
 
     return step
 
 
-def seen_in_time(profile: Profile, vehicle: Vehicle, journey: Journey) -> Excitation:
-    """Elevation under each contact and its rate, averaged over the contact's footprint.
+class Seen(NamedTuple):
+    """What the contacts see of the road, step by step."""
+
+    roughness: FloatArray  # (time, contact) [m]
+    rate: FloatArray  # (time, contact) [m/s]
+    datum: float  # [m]
+
+
+def seen_in_time(profile: Profile, vehicle: Vehicle, journey: Journey) -> Seen:
+    """Elevation under each contact and its rate of change.
 
     Parameters
     ----------
@@ -408,47 +408,15 @@ def seen_in_time(profile: Profile, vehicle: Vehicle, journey: Journey) -> Excita
 
     Returns
     -------
-    Excitation
-        Roughness [m] and its rate of change [m/s], shape (time, contact).
+    Seen
+        Time first, as steps take it.
     """
     excitation = excite(
-        profile,
-        vehicle.positions,
-        [contact.path for contact in vehicle.contacts],
-        speed=journey.speed,
-        samples=journey.samples,
-        time_step=journey.time_step,
-        start=journey.start,
-        blend=journey.blend,
-        rate=True,
+        profile, Touch(**vehicle.touching), start=journey.start, distance=journey.distance, blend=journey.blend
     )
-    roughness, rate = excitation.roughness, excitation.rate
-    assert rate is not None
-    passing = np.array([contact.footprint for contact in vehicle.contacts]) / journey.speed
-    if passing.any():
-        roughness, rate = _averaged(roughness, rate, passing, journey.time_step)
-    return Excitation(np.ascontiguousarray(roughness), excitation.datum, np.ascontiguousarray(rate))
-
-
-def _averaged(
-    roughness: FloatArray, rate: FloatArray, passing: FloatArray, time_step: float
-) -> tuple[FloatArray, FloatArray]:
-    """Average a record over the time that a footprint takes to pass; it is zero before its start."""
-    from scipy.interpolate import CubicHermiteSpline
-
-    roughness, rate = roughness.copy(), rate.copy()
-    time = time_step * np.arange(len(roughness))
-    for contact in np.flatnonzero(passing):
-        spline = CubicHermiteSpline(time, roughness[:, contact].copy(), rate[:, contact])
-        area = spline.antiderivative()
-        half = 0.5 * passing[contact]
-        behind, ahead = np.clip(time - half, 0.0, None), np.clip(time + half, None, time[-1])
-        # Behind its start a record is zero, past its end it keeps its last value.
-        late = np.maximum(time + half - time[-1], 0.0) * spline(time[-1])
-        first = np.where(time >= half, spline(behind), 0.0)
-        roughness[:, contact] = (area(ahead) - area(behind) + late) / passing[contact]
-        rate[:, contact] = (spline(ahead) - first) / passing[contact]
-    return roughness, rate
+    roughness = excitation.elevation(journey.travelled)
+    rate = excitation.rate(journey.travelled, journey.speed)
+    return Seen(np.ascontiguousarray(roughness.T), np.ascontiguousarray(rate.T), excitation.datum)
 
 
 def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress) -> tuple[Steady, State]:

@@ -13,9 +13,8 @@ import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
-from movingfrf._basics.version import VERSION
 from movingfrf.guideways.sampled import SampledGuideway
-from movingfrf.results.labels import COUPLED, LOADED, labelled
+from movingfrf.results.labels import attributes, labelled
 from movingfrf.roughness.profile import Profile
 from movingfrf.stepping.coupled import seen_in_time
 from movingfrf.stepping.exchange import numba_is_there
@@ -109,8 +108,7 @@ def duhamel(
     whole, _, earlier = weights(road, time_step)
     channels = 5 * positions.size + 2 * len(vehicle.dof_names)
     require_memory(8.0 * channels * journey.samples, f"{journey.samples} steps of {time_step:g} s")
-    excitation = seen_in_time(profile, vehicle, journey)
-    assert excitation.rate is not None
+    seen = seen_in_time(profile, vehicle, journey)
     yields = road.moving_frf(speed=speed, omega=[0.0], **vehicle.offsets)[0].real
     tie = tie_of(vehicle)
     held = stiffness_at_rest(tie)
@@ -126,7 +124,7 @@ def duhamel(
     advance = _compiled() if (numba_is_there() if compiled is None else compiled) else _plain
     state = np.zeros((3, len(tie.mass)))
     # The elevation may begin with a jump: forces act from t = 0 on, the first one by half of its hat.
-    first = tie.springs * excitation.roughness[0] + tie.dashpots * excitation.rate[0]
+    first = tie.springs * seen.roughness[0] + tie.dashpots * seen.rate[0]
     state[2] = -np.linalg.solve(tie.mass, tie.contact_map.T @ first)
     begun = np.einsum("tij,j->it", earlier[:, columns], first)
     vehicle_inverse = np.linalg.inv(tie.mass + _lift(tie, time_step))
@@ -139,8 +137,8 @@ def duhamel(
             np.ascontiguousarray(begun),
             vehicle_inverse,
             *tie[1:],
-            excitation.roughness,
-            excitation.rate,
+            seen.roughness,
+            seen.rate,
             state,
             begin,
             end,
@@ -157,21 +155,17 @@ def duhamel(
         "static_deflection": steady,
         "motion": motion,
         "acceleration": acceleration,
-        "roughness": excitation.roughness,
+        "roughness": seen.roughness,
     }
-    attributes: dict[str, str | float | int] = {
-        "title": "Coupled response of a vehicle and a guideway: Duhamel's integral",
-        "movingfrf": VERSION,
-        "speed": float(speed),
-        "duration": float(duration),
-        "start": float(start),
-        "time_step": float(time_step),
-        "blend": float(blend),
-        "datum": excitation.datum,
-        "critical_speed": float(road.critical_speed),
-        "findings": find.announced(find.contact_lost(force + load, time_step)),
-    }
-    return labelled(values, COUPLED, attributes)
+    settings = attributes(
+        "coupled",
+        "Coupled response of a vehicle and a guideway: Duhamel's integral",
+        **journey.settings,
+        datum=seen.datum,
+        critical_speed=road.critical_speed,
+        findings=find.contact_lost(force + load, time_step),
+    )
+    return labelled(values, settings)
 
 
 def duhamel_loads(
@@ -246,15 +240,14 @@ def duhamel_loads(
         "force": forces,
         "deflection": deflection,
     }
-    attributes: dict[str, str | float | int] = {
-        "title": "Response of a guideway to prescribed moving loads: Duhamel's integral",
-        "movingfrf": VERSION,
-        "speed": float(speed),
-        "time_step": float(time_step),
-        "critical_speed": float(road.critical_speed),
-        "findings": "[]",
-    }
-    return labelled(values, LOADED, attributes)
+    settings = attributes(
+        "loaded",
+        "Response of a guideway to prescribed moving loads: Duhamel's integral",
+        speed=speed,
+        time_step=time_step,
+        critical_speed=road.critical_speed,
+    )
+    return labelled(values, settings)
 
 
 def weights(guideway: SampledGuideway, time_step: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
-from movingfrf._basics.version import VERSION
-from movingfrf.results.labels import LOADED, labelled
+from movingfrf.results.labels import attributes, labelled
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.marching import March
 from movingfrf.stepping.requirements import require_kinds, require_on_guideway, require_stable_scheme
@@ -129,15 +128,14 @@ def newmark_loads(
         "force": forces,
         "deflection": trace.observed,
     }
-    attributes: dict[str, str | float | int] = {
-        "title": "Response of a finite road to prescribed moving loads: Newmark's method",
-        "movingfrf": VERSION,
-        "speed": float(speed),
-        "time_step": float(time_step),
-        "start": float(start),
-        "scheme": repr(row),
-        "road_dofs": road.dofs,
-        "road_spacing": float(road.spacing),
-        "findings": "[]",
-    }
-    return labelled(values, LOADED, attributes)
+    settings = attributes(
+        "loaded",
+        "Response of a finite road to prescribed moving loads: Newmark's method",
+        speed=speed,
+        time_step=time_step,
+        start=start,
+        scheme=repr(row),
+        road_dofs=road.dofs,
+        road_spacing=road.spacing,
+    )
+    return labelled(values, settings)

@@ -8,6 +8,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import NumberArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.enveloping import enveloping
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,8 +91,4 @@ class Contact:
         ndarray
             sin(κL/2)/(κL/2) · cos(κs/2) for a footprint of length L and cams at a distance s, like `wavenumber`.
         """
-        half = 0.5 * self.footprint * wavenumber
-        # The series where the quotient loses its digits.
-        small = np.abs(half) < 1e-4
-        averaged = np.where(small, 1.0 - half * half / 6.0, np.sin(half) / np.where(small, 1.0, half))
-        return averaged * np.cos(0.5 * self.cams * wavenumber)
+        return enveloping(wavenumber, self.footprint, self.cams)

@@ -64,26 +64,28 @@ class Quadratic(NamedTuple):
         return [(power, part) for power, part in enumerate(self) if part.any()]
 
     def times(self, omega: ComplexArray, columns: ComplexArray) -> ComplexArray:
-        """Multiply with a column per frequency, shapes (i, frequency) and (j, frequency)."""
-        return _horner(1j * omega, [part @ columns if part.any() else None for part in self], len(self.constant))
+        """Multiply with a column per case and frequency: (*case, j, frequency) becomes (*case, i, frequency)."""
+        shape = (*columns.shape[:-2], len(self.constant), omega.size)
+        return _horner(1j * omega, [part @ columns if part.any() else None for part in self], shape)
 
     def at(self, omega: ComplexArray) -> ComplexArray:
-        """Evaluate at some frequencies [rad/s], shape (frequency, *coefficient)."""
-        s: ComplexArray = 1j * omega[:, None, None]
+        """Evaluate at some frequencies [rad/s], shape (*coefficient, frequency)."""
+        s: ComplexArray = 1j * omega
+        constant, linear, square = (part[..., None] for part in self)
         if not self.square.any():
-            return self.constant + s * self.linear
-        return self.constant + s * (self.linear + s * self.square)
+            return constant + s * linear
+        return constant + s * (linear + s * square)
 
 
-def _horner(s: ComplexArray, terms: Sequence[ComplexArray | None], rows: int) -> ComplexArray:
-    """Σ sᵏ terms[k], each of shape (row, frequency), None for zero; the terms are used up."""
+def _horner(s: ComplexArray, terms: Sequence[ComplexArray | None], shape: tuple[int, ...]) -> ComplexArray:
+    """Σ sᵏ terms[k], each of this shape with frequency last, None for zero; the terms are used up."""
     total: ComplexArray | None = None
     for term in reversed(terms):
         if total is not None:
             total *= s
         if term is not None:
             total = term if total is None else np.add(total, term, out=total)
-    return np.zeros((rows, s.size), complex) if total is None else total
+    return np.zeros(shape, complex) if total is None else total
 
 
 class Split(NamedTuple):
@@ -167,7 +169,7 @@ class Part:
     modes: Modes | None
 
     def response(self, omega: ComplexArray, displacement: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """Motion (dof, frequency) and contact force for a displacement, both (contact, frequency)."""
+        """Motion (*case, dof, frequency) and contact force for a displacement, both (*case, contact, frequency)."""
         free = self._free(omega, displacement)
         if not self.motion.prescribed.any():
             moved = free
@@ -179,26 +181,29 @@ class Part:
         return moved, force
 
     def _free(self, omega: ComplexArray, displacement: ComplexArray) -> ComplexArray:
-        """Free coordinates p = P⁻¹ H d, shape (free, frequency)."""
+        """Free coordinates p = P⁻¹ H d, shape (*case, free, frequency)."""
         if not len(self.own.constant):
-            return np.zeros((0, omega.size), complex)
+            return np.zeros((*displacement.shape[:-2], 0, omega.size), complex)
         if self.modes is None:
-            pushed = self.entry.times(omega, displacement)
-            return np.linalg.solve(self.own.at(omega), pushed.T[:, :, None])[:, :, 0].T
+            pushed = np.moveaxis(self.entry.times(omega, displacement), -1, 0)
+            # Frequency first, and columns, is what LAPACK takes.
+            own = np.moveaxis(self.own.at(omega), -1, 0)
+            own = own.reshape(omega.size, *(1,) * (pushed.ndim - 2), *own.shape[1:])
+            return np.moveaxis(np.linalg.solve(own, pushed[..., None])[..., 0], 0, -1)
         poles, shapes, weights = self.modes
         entered = (weights @ part @ displacement if part.any() else None for part in self.entry)
-        modal = _horner(1j * omega, list(entered), len(poles))
+        modal = _horner(1j * omega, list(entered), (*displacement.shape[:-2], len(poles), omega.size))
         modal *= _admittance(omega, poles)
         return shapes @ modal
 
     def stiffness(self, omega: ComplexArray) -> ComplexArray:
-        """Dynamic stiffness D = E − Hᵀ P⁻¹ H at its contacts, shape (frequency, contact, contact)."""
+        """Dynamic stiffness D = E − Hᵀ P⁻¹ H at its contacts, shape (contact, contact, frequency)."""
         direct = self.direct.at(omega)
         if not len(self.own.constant):
             return direct
         if self.modes is None:
-            entry = self.entry.at(omega)
-            return direct - entry.transpose(0, 2, 1) @ np.linalg.solve(self.own.at(omega), entry)
+            entry, own = (np.moveaxis(part.at(omega), -1, 0) for part in (self.entry, self.own))
+            return direct - np.moveaxis(entry.swapaxes(1, 2) @ np.linalg.solve(own, entry), 0, -1)
         poles, shapes, weights = self.modes
         count, admittance = len(self.contacts), _admittance(omega, poles)
         # Hᵀ P⁻¹ H power by power of iω: each is a sum over modes, one product of matrices for all frequencies.
@@ -207,8 +212,7 @@ class Part:
             for power_in, into in self.entry.terms():
                 carried[power_out + power_in] += (out.T @ shapes)[:, None, :] * (weights @ into).T
         terms = [part.reshape(count * count, -1) @ admittance if part.any() else None for part in carried]
-        summed = _horner(1j * omega, terms, count * count)
-        direct -= summed.T.reshape(direct.shape)
+        direct -= _horner(1j * omega, terms, (count * count, omega.size)).reshape(direct.shape)
         return direct
 
 
@@ -242,26 +246,25 @@ class Dynamics:
         ----------
         omega : ndarray, shape (frequency,)
             Angular frequency [rad/s].
-        displacement : ndarray, shape (frequency, contact)
+        displacement : ndarray, shape (*case, contact, frequency)
             Displacement below the contacts [m], positive down: deflection less elevation.
 
         Returns
         -------
-        motion : ndarray, shape (frequency, dof)
+        motion : ndarray, shape (*case, dof, frequency)
             Motion of each degree of freedom [m or rad].
-        force : ndarray, shape (frequency, contact)
+        force : ndarray, shape (*case, contact, frequency)
             Dynamic contact force [N], compression positive: −D d.
         """
-        # Frequency last while computing: the other axes are too short to loop over first.
-        columns = displacement.T
         if len(self.parts) == 1:
-            motion, force = self.parts[0].response(omega, columns)
-            return motion.T, force.T
-        motion = np.empty((self.dofs, omega.size), complex)
-        force = np.empty((self.contacts, omega.size), complex)
+            return self.parts[0].response(omega, displacement)
+        cases = displacement.shape[:-2]
+        motion = np.empty((*cases, self.dofs, omega.size), complex)
+        force = np.empty((*cases, self.contacts, omega.size), complex)
         for part in self.parts:
-            motion[part.dofs], force[part.contacts] = part.response(omega, columns[part.contacts])
-        return motion.T, force.T
+            below = displacement[..., part.contacts, :]
+            motion[..., part.dofs, :], force[..., part.contacts, :] = part.response(omega, below)
+        return motion, force
 
     def stiffness(self, omega: ComplexArray) -> ComplexArray:
         """Dynamic stiffness at the contacts.
@@ -275,14 +278,14 @@ class Dynamics:
 
         Returns
         -------
-        ndarray, shape (frequency, contact, contact)
+        ndarray, shape (contact, contact, frequency)
             Force that the guideway exerts on the vehicle per displacement below the contacts [N/m].
         """
         if len(self.parts) == 1:
             return self.parts[0].stiffness(omega)
-        stiffness = np.zeros((omega.size, self.contacts, self.contacts), complex)
+        stiffness = np.zeros((self.contacts, self.contacts, omega.size), complex)
         for part in self.parts:
-            stiffness[:, part.contacts[:, None], part.contacts] = part.stiffness(omega)
+            stiffness[part.contacts[:, None], part.contacts] = part.stiffness(omega)
         return stiffness
 
 

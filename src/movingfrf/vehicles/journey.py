@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -63,11 +64,31 @@ class Journey:
         """Number of time steps."""
         return round(self.duration / self.time_step)
 
+    @property
+    def time(self) -> FloatArray:
+        """Instants at which the vehicle is observed [s], from zero."""
+        return np.arange(self.samples) * self.time_step
+
+    @property
+    def travelled(self) -> FloatArray:
+        """Distance travelled by then [m]."""
+        return self.speed * self.time_step * np.arange(self.samples)
+
+    @property
+    def distance(self) -> float:
+        """Distance travelled in all [m]."""
+        return self.speed * self.time_step * self.samples
+
+    @property
+    def settings(self) -> dict[str, float]:
+        """What a result says of the journey, by the names of its attributes."""
+        return {name: getattr(self, name) for name in ("speed", "duration", "start", "time_step", "blend")}
+
     def interval(self, vehicle: Vehicle) -> tuple[float, float]:
         """First and last distance that a contact meets [m]."""
         positions = self.start + vehicle.positions
-        return float(positions.min()), float(positions.max()) + self.speed * self.time_step * self.samples
+        return float(positions.min()), float(positions.max()) + self.distance
 
     def coordinates(self, vehicle: Vehicle) -> dict[str, ArrayLike]:
         """Coordinates of a coupled result by their names in the schema: times, contacts, degrees of freedom."""
-        return {"time": np.arange(self.samples) * self.time_step, **vehicle.coordinates}
+        return {"time": self.time, **vehicle.coordinates}

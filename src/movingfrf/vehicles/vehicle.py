@@ -9,7 +9,7 @@ from typing import NotRequired, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.dynamics import Dynamics, Quadratic, held, parts, split
@@ -25,6 +25,15 @@ class Offsets(TypedDict):
     # Of a vehicle with contacts beside the centre line only.
     across: NotRequired[FloatArray]
     source_across: NotRequired[FloatArray]
+
+
+class Touching(TypedDict):
+    """What of the road contacts touch, as `roughness.excitation.Touch` takes it; arrays (contact,) [m]."""
+
+    positions: FloatArray
+    paths: list[int]
+    footprints: FloatArray
+    cams: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -116,6 +125,16 @@ class Vehicle:
         return [contact.path for contact in self.contacts]
 
     @property
+    def touching(self) -> Touching:
+        """Where the contacts stand and what of the road each touches, as an excitation takes it."""
+        return {
+            "positions": self.positions,
+            "paths": self.paths,
+            "footprints": np.array([contact.footprint for contact in self.contacts]),
+            "cams": np.array([contact.cams for contact in self.contacts]),
+        }
+
+    @property
     def coordinates(self) -> dict[str, ArrayLike]:
         """Coordinates of a result by their names in the schema: contacts and degrees of freedom."""
         return {
@@ -181,21 +200,6 @@ class Vehicle:
         """
         found = parts(*self.matrices, self.springs, self.dashpots)
         return Dynamics(found, len(self.dof_names), len(self.contacts))
-
-    def enveloping(self, wavenumber: NumberArray) -> NumberArray:
-        """Share of a wave of the profile that each contact follows.
-
-        Parameters
-        ----------
-        wavenumber : ndarray, shape (wave,)
-            Wavenumber of the profile [rad/m]; may be complex.
-
-        Returns
-        -------
-        ndarray, shape (wave, contact)
-            1 for contacts that see one point of the profile; see `Contact.enveloping`.
-        """
-        return np.stack([contact.enveloping(wavenumber) for contact in self.contacts], axis=1)
 
     @property
     def held_stiffness(self) -> FloatArray:

@@ -8,7 +8,8 @@ import numpy as np
 
 from movingfrf._basics.wording import number
 from movingfrf.reports.tables import Column
-from movingfrf.response.simulation import spectral_grid
+from movingfrf.response.simulation import line_of
+from movingfrf.response.truncation import Truncation
 from movingfrf.stepping.duhamel import duhamel_loads
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, moving_impulse_response
@@ -92,13 +93,15 @@ def cheaper(study: Study) -> Outcome:
     equal = compared.equal_error
     journey, vehicle = compared.scenario.journey, compared.scenario.vehicle
     assert vehicle is not None
-    grid = spectral_grid(journey, vehicle)
+    line = line_of(journey, vehicle)
+    assert journey.truncation is not None
+    kept = Truncation(frequency=journey.truncation).reach(line.omega())
     case = Case(scenario=compared.scenario, time_step=journey.time_step, element=elements(compared.scenario)[-1])
     channels = 2 * len(vehicle.contacts) + 2 * len(vehicle.dof_names)
     counts = (
         operations.newmark_banded(case.finite(travels=False).dofs, journey.samples),
-        operations.moving_frf(grid.kept, len(vehicle.contacts), len(vehicle.contacts))
-        + (len(vehicle.contacts) + channels) * operations.real_fft(grid.padded),
+        operations.moving_frf(kept, len(vehicle.contacts), len(vehicle.contacts))
+        + (len(vehicle.contacts) + channels) * operations.real_fft(line.padded),
     )
     words = " ".join(_at_equal_error(target, found) for target, found in equal.items())
     finest = equal[min(TARGETS)]

@@ -13,7 +13,7 @@ from movingfrf.guideways.foundations import Spring
 from movingfrf.guideways.track import Track
 from movingfrf.reports.curves import GREY
 from movingfrf.reports.tables import Column
-from movingfrf.response.line import SpectralGrid
+from movingfrf.response.line import Line
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, PINNED, RINGING, moving_impulse_response, struck_track
 from movingfrf.studies.comparison.convergence import quantities, relative_l2
@@ -111,10 +111,10 @@ def _figure_05(
     figure, (response, spectrum, sides, error) = canvas(2, 2, 4.8)
     highest = float(frequency[-1])
     step = 2.5e-4  # of the closed form's impulse response [s]: fine enough for the eye
-    grid = SpectralGrid(samples=int(1.0 / step), time_step=step, settling=1.0)
-    impulse = grid.to_histories(study.guideway.moving_frf([0.0], study.speed, grid.omega())).values[:, 0]
+    record = Line(samples=int(1.0 / step), time_step=step, settling=1.0)
+    impulse = record.records(study.guideway.moving_frf(0.0, study.speed, record.omega())).values
     struck_time = np.arange(len(study.struck.samples)) * study.struck.time_step
-    curve(response, grid.time, 1e9 * impulse, STROKES.black, "closed form")
+    curve(response, record.time, 1e9 * impulse, STROKES.black, "closed form")
     curve(response, struck_time, 1e9 * study.struck.samples[:, 0], STROKES.orange, "40 m of finite elements")
     response.set(xlabel="time [s]", ylabel="moving impulse response [nm/(N s)]", xlim=(0, 0.5))
     curve(spectrum, frequency, 1e9 * np.abs(exact[:, 0]), STROKES.black, "closed form")

@@ -15,7 +15,8 @@ from movingfrf._basics.wording import number
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.reports.curves import GREY
 from movingfrf.reports.tables import Column
-from movingfrf.response.line import SpectralGrid
+from movingfrf.response.line import Line
+from movingfrf.response.truncation import Truncation
 from movingfrf.stepping.duhamel import duhamel_loads
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.finite_track import finite_track
@@ -379,13 +380,14 @@ def costs(study: Study) -> Outcome:
     """Table 1: multiplications and times of three methods, and their errors."""
     case = scenario("load")
     step, samples = case.journey.time_step, case.journey.samples
-    grid = SpectralGrid(samples=samples, time_step=step, truncation=STATED.truncation, settling=samples * step)
+    line = Line(samples=samples, time_step=step, settling=samples * step)
+    kept = Truncation(frequency=STATED.truncation).reach(line.omega())
     unpadded, memory = round(STATED.truncation * samples * step) + 1, len(study.struck.samples)
     n = study.finite.dofs
     full, bands = operations.newmark_full(n, samples), operations.newmark_banded(n, samples)
     convolved = operations.duhamel(samples, memory)
-    with_transforms = operations.moving_frf(grid.kept) + 2 * operations.real_fft(grid.padded)
-    seconds, errors = _measured(study, grid)
+    with_transforms = operations.moving_frf(kept) + 2 * operations.real_fft(line.padded)
+    seconds, errors = _measured(study, line)
     few = 200  # steps with full matrices that are timed
     dense_setup, dense_record, dense_apart = _with_full_matrices(
         study.finite, study.force, case.journey.speed, step, few
@@ -450,7 +452,7 @@ def costs(study: Study) -> Outcome:
             "once: N (3 n² + 11 n + 17). With bands, as this package steps: N (31 n + 37). Duhamel: m N − m (m − "
             f"1)/2 with the m = {memory} samples recorded on 40 m. Moving FRF: 4 for each of the f T + 1 = "
             f"{unpadded} frequencies up to {STATED.truncation:g} Hz; padded for the response to die away, "
-            f"{grid.kept} of them, and two transforms of {grid.padded} points. A division counts as a "
+            f"{kept} of them, and two transforms of {line.padded} points. A division counts as a "
             "multiplication; what is prepared once does not count. tests/paper/test_operations.py counts the "
             "multiplications of small instrumented runs.",
             "Times: medians, in turns, one thread, steps compiled where numba is installed. Newmark with full "
@@ -483,14 +485,15 @@ def costs(study: Study) -> Outcome:
     )
 
 
-def _measured(study: Study, grid: SpectralGrid) -> tuple[dict[str, float], dict[str, float]]:
+def _measured(study: Study, line: Line) -> tuple[dict[str, float], dict[str, float]]:
     """Measure times of all ways and of their preparation [s], and errors of the responses."""
     case = scenario("load")
     finite, forces = study.finite, study.force
     speed, step = case.journey.speed, case.journey.time_step
-    kept = slice(grid.kept)
+    cut = Truncation(frequency=STATED.truncation)
+    omega = line.omega()[: cut.reach(line.omega())]
     frf = {
-        name: guideway.moving_frf([0.0], speed, grid.omega(kept)) * grid.compliance(kept)[:, None]
+        name: guideway.moving_frf(0.0, speed, omega) * cut.taper(omega)
         for name, guideway in (("moving FRF", study.struck), ("closed form", study.guideway))
     }
     records: dict[str, Callable[[], FloatArray]] = {
@@ -498,13 +501,13 @@ def _measured(study: Study, grid: SpectralGrid) -> tuple[dict[str, float], dict[
         "Duhamel": lambda: (
             duhamel_loads(study.struck, forces, [0.0], speed=speed, time_step=step).deflection.values
         ),
-        "moving FRF": lambda: _product(grid, frf["moving FRF"], forces),
+        "moving FRF": lambda: _product(line, frf["moving FRF"], forces),
     }
     once: dict[str, Callable[[], object]] = {
         "factorising": lambda: newmark_loads(finite, forces[:2], [0.0], speed=speed, time_step=step),
         "striking": lambda: struck_track(study.guideway, speed=speed, offsets=[0.0], plain=True),
-        "transforming": lambda: study.struck.moving_frf([0.0], speed, grid.omega(kept)),
-        "closed form": lambda: study.guideway.moving_frf([0.0], speed, grid.omega(kept)),
+        "transforming": lambda: study.struck.moving_frf(0.0, speed, omega),
+        "closed form": lambda: study.guideway.moving_frf(0.0, speed, omega),
     }
     study.told("times of three methods", 0, 1)
     with quiet():
@@ -516,13 +519,13 @@ def _measured(study: Study, grid: SpectralGrid) -> tuple[dict[str, float], dict[
             else converged(case, study.progress).quantities["deflection"]
         )
         errors = {name: relative(record(), wanted) for name, record in records.items()}
-        errors["closed form"] = relative(_product(grid, frf["closed form"], forces), wanted)
+        errors["closed form"] = relative(_product(line, frf["closed form"], forces), wanted)
     return seconds, errors
 
 
-def _product(grid: SpectralGrid, frf: ComplexArray, forces: FloatArray) -> FloatArray:
+def _product(line: Line, frf: ComplexArray, forces: FloatArray) -> FloatArray:
     """Transform, multiply, transform back."""
-    return grid.to_histories(frf * grid.to_spectra(forces)[: grid.kept]).values
+    return line.records(frf * line.spectra(forces[:, 0])[: frf.size]).values[:, None]
 
 
 def _with_full_matrices(

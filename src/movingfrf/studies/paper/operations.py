@@ -163,7 +163,7 @@ def moving_frf(frequencies: int, loads: int = 1, points: int = 1) -> int:
     deflections (see `real_fft`) are not included.
 
     `moving_loads` pads its record for the response to die away in, so that there are more frequencies below a
-    truncation than the record alone would have: `SpectralGrid.kept`.
+    truncation than the record alone would have: `Truncation.reach`.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import Track
-from movingfrf.response.line import SpectralGrid
+from movingfrf.response.line import Line
 from movingfrf.response.moving_loads import moving_loads
 from movingfrf.response.simulation import simulate
 from movingfrf.roughness.profile import Profile
@@ -150,10 +150,10 @@ class Study:
         """
         journey = scenario(name).journey
         samples, step = journey.samples, journey.time_step
-        grid = SpectralGrid(samples=samples, time_step=step, settling=samples * step)
-        spectrum = guideway.moving_frf([0.0], journey.speed, grid.omega()) * grid.to_spectra(history(name))
-        kept = np.arange(grid.size) / (grid.padded * step)
-        return lambda cut: grid.to_histories(spectrum[kept <= cut * (1 + 1e-9)]).values
+        line = Line(samples=samples, time_step=step, settling=samples * step)
+        spectrum = guideway.moving_frf(0.0, journey.speed, line.omega()) * line.spectra(history(name)[:, 0])
+        kept = np.arange(line.size) / line.period
+        return lambda cut: line.records(spectrum[kept <= cut * (1 + 1e-9)]).values[:, None]
 
     @cached_property
     def by_newmark(self) -> xr.Dataset:
