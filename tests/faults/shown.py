@@ -1,4 +1,4 @@
-"""What is read and shown: files of results, words, curves, tables, scenarios."""
+"""What is read and shown: files of results, words, curves, tables, scenarios; what is remembered."""
 
 from __future__ import annotations
 
@@ -23,5 +23,6 @@ FAULTS = [
     Fault("moving FRF up to a truncation", "reports/frf.py", "return min(max(ends), kept)", "return kept"),
     Fault("table wider than the console", "commands/console.py", "if pieces[-1] and width > left:", "if False:"),
     Fault("once in 1e46 seconds", "_basics/wording.py", "0 < value < NEVER", "0 < value < 0"),
+    Fault("computed each time", "_basics/remembered.py", "if name not in implied:", "if True:"),
     Fault("file without accelerations", "results/files.py", "if not label.optional]", "if label.optional]"),
 ]

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf.guideways.beams import Beam
 from movingfrf.guideways.critical import first_stationary_velocity, speed_of_greatest_deflection
 from movingfrf.guideways.foundations import Foundation
@@ -16,7 +17,7 @@ from movingfrf.guideways.waves import Ratio, residue_sum
 
 
 @dataclass(frozen=True, slots=True)
-class Track:
+class Track(Remembering):
     """A beam on a foundation, infinitely long; made by `track`.
 
     Parameters
@@ -35,8 +36,9 @@ class Track:
         return self.beam.beam_stiffness(damped=damped) + self.foundation.foundation_stiffness(damped=damped)
 
     @property
+    @remembered
     def critical_speed(self) -> float:
-        """Critical speed [m/s]; inf if there is none.
+        """Critical speed [m/s]; inf if there is none. Computed when first asked for.
 
         On a massless foundation the minimum phase velocity, damping ignored: a load that travels with it keeps
         up with its own waves. A mass in the foundation lets waves of ever shorter length travel ever slower;

@@ -1,0 +1,63 @@
+"""What a frozen value implies is computed once, and remembered in the value itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, TypeVar
+
+Implied = TypeVar("Implied")
+
+
+class Remembering:
+    """Base of frozen, slotted dataclasses that remember what they imply: one private slot and nothing else.
+
+    The slot is no field: it is not compared, hashed, shown, copied, replaced or pickled. A copy computes afresh.
+    """
+
+    __slots__ = ("_implied",)
+
+
+def remembered(compute: Callable[[Any], Implied]) -> Callable[[Any], Implied]:
+    """Compute a method without arguments, or a property, once per value; for classes based on `Remembering`.
+
+    Threads that ask at the same moment may each compute; nothing worse happens.
+
+    Parameters
+    ----------
+    compute : callable
+        The method; below `property`, if it is one. What it returns is shared, so it must not be changed.
+
+    Returns
+    -------
+    callable
+        The method, which computes when it is asked first.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True, slots=True)
+    ... class Span(Remembering):
+    ...     length: float
+    ...     @property
+    ...     @remembered
+    ...     def half(self):
+    ...         print("computed")
+    ...         return 0.5 * self.length
+    >>> span = Span(6.0)
+    >>> span.half, span.half
+    computed
+    (3.0, 3.0)
+    """
+
+    @wraps(compute)
+    def recalled(value: Any) -> Implied:
+        if not hasattr(value, "_implied"):
+            object.__setattr__(value, "_implied", {})
+        implied: dict[str, Implied] = value._implied
+        name = compute.__name__
+        if name not in implied:
+            implied[name] = compute(value)
+        return implied[name]
+
+    return recalled

@@ -1,0 +1,111 @@
+"""A value may remember what it implies; from outside it is as if it did not."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from threading import Barrier
+
+import pytest
+
+import movingfrf.guideways.track as tracks
+from movingfrf._basics.remembered import Remembering, remembered
+from tests.helpers import DAMPED, critical_speed
+
+ASKED: list[str] = []
+
+
+@dataclass(frozen=True, slots=True)
+class Span(Remembering):
+    """A value with a property and a method that are computed once."""
+
+    length: float
+    wait: Barrier = field(default_factory=lambda: Barrier(1), compare=False, repr=False)
+
+    @property
+    @remembered
+    def half(self) -> list[float]:
+        """Half of it."""
+        ASKED.append("half")
+        return [0.5 * self.length]
+
+    @remembered
+    def double(self) -> list[float]:
+        """Twice as much, known once the others have come to ask."""
+        ASKED.append("double")
+        self.wait.wait()
+        return [2 * self.length]
+
+
+@pytest.fixture(autouse=True)
+def _nobody_asked():
+    ASKED.clear()
+
+
+def test_properties_and_methods_are_computed_once_each():
+    span = Span(6.0)
+    assert (span.half, span.double(), span.half, span.double()) == ([3.0], [12.0], [3.0], [12.0])
+    assert ASKED == ["half", "double"]
+    assert Span.double.__doc__ == "Twice as much, known once the others have come to ask."
+
+
+def test_nobody_sees_that_it_is_remembered():
+    track = replace(DAMPED["euler_bernoulli_winkler"])
+    plain = (repr(track), hash(track), pickle.dumps(track))
+    assert track.critical_speed == pytest.approx(177.525, rel=1e-4)
+    assert (repr(track), hash(track), pickle.dumps(track)) == plain
+    assert track == replace(track)
+    assert not hasattr(track, "__dict__")
+
+
+@pytest.mark.parametrize(
+    "copied", [replace, copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))]
+)
+def test_a_copy_computes_afresh(copied, monkeypatch):
+    track = replace(DAMPED["euler_bernoulli_winkler"])
+    speed = track.critical_speed
+    twin = copied(track)
+    assert twin == track
+    monkeypatch.setattr(tracks, "first_stationary_velocity", lambda _: pytest.fail("asked"))
+    assert track.critical_speed == speed
+    with pytest.raises(pytest.fail.Exception, match="asked"):
+        _ = twin.critical_speed
+
+
+def test_another_value_has_another_memory():
+    track = DAMPED["euler_bernoulli_winkler"]
+    stiffer = replace(track, foundation=replace(track.foundation, stiffness=16 * track.foundation.stiffness))
+    assert track.critical_speed == critical_speed("euler_bernoulli_winkler")
+    assert stiffer.critical_speed == pytest.approx(2 * track.critical_speed)
+
+
+def test_threads_may_ask_at_once():
+    count = 4
+    span = Span(6.0, Barrier(count, timeout=10.0))
+    with ThreadPoolExecutor(count) as pool:
+        found = [one.result() for one in [pool.submit(span.double) for _ in range(count)]]
+    assert found == count * [[12.0]]
+    asked = len(ASKED)
+    assert span.double() == [12.0]
+    assert len(ASKED) == asked == count
+
+
+def test_what_fails_is_not_remembered():
+    @dataclass(frozen=True, slots=True)
+    class Fickle(Remembering):
+        tries: list[int]
+
+        @remembered
+        def answer(self) -> int:
+            self.tries.append(0)
+            if len(self.tries) < 2:
+                raise ValueError("not yet")
+            return 42
+
+    fickle = Fickle([])
+    with pytest.raises(ValueError, match="not yet"):
+        fickle.answer()
+    assert fickle.answer() == fickle.answer() == 42
+    assert len(fickle.tries) == 2
