@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -63,6 +64,11 @@ class Journey:
         """Number of time steps."""
         return round(self.duration / self.time_step)
 
+    @property
+    def times(self) -> FloatArray:
+        """Times at which it is observed, shape (time,) [s]."""
+        return np.arange(self.samples) * self.time_step
+
     def interval(self, vehicle: Vehicle) -> tuple[float, float]:
         """First and last distance that a contact meets [m]."""
         positions = self.start + vehicle.positions
@@ -70,4 +76,4 @@ class Journey:
 
     def coordinates(self, vehicle: Vehicle) -> dict[str, ArrayLike]:
         """Coordinates of a coupled result by their names in the schema: times, contacts, degrees of freedom."""
-        return {"time": np.arange(self.samples) * self.time_step, **vehicle.coordinates}
+        return {"time": self.times, **vehicle.coordinates}

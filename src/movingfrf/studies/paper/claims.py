@@ -9,6 +9,7 @@ import numpy as np
 from movingfrf._basics.wording import number
 from movingfrf.reports.tables import Column
 from movingfrf.response.simulation import spectral_grid
+from movingfrf.scenarios.scenario import drive_of
 from movingfrf.stepping.duhamel import duhamel_loads
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, moving_impulse_response
@@ -90,8 +91,7 @@ def cheaper(study: Study) -> Outcome:
     """Claim 2: how much cheaper, at equal accuracy."""
     compared = study.compared
     equal = compared.equal_error
-    journey, vehicle = compared.scenario.journey, compared.scenario.vehicle
-    assert vehicle is not None
+    journey, vehicle = compared.scenario.journey, drive_of(compared.scenario).vehicle
     grid = spectral_grid(journey, vehicle)
     case = Case(scenario=compared.scenario, time_step=journey.time_step, element=elements(compared.scenario)[-1])
     channels = 2 * len(vehicle.contacts) + 2 * len(vehicle.dof_names)
