@@ -1,7 +1,7 @@
 """How fast, against another checkout: `make against OLD=path`.
 
-Each side has a process of its own, on one thread. Both prepare the same cases and then solve them in turn, so that a busy
-machine slows both; medians of wall and processor time, and the median of the ratios of neighbours.
+Each side has a process of its own, on one thread. Both prepare the same cases and then solve them in turn, so that
+a busy machine slows both; medians of wall and processor time, and the median of the ratios of neighbours.
 """
 
 from __future__ import annotations
@@ -91,9 +91,8 @@ def main() -> None:
         for number, kind in enumerate(("wall", "processor")):
             mine, theirs = ([pair[side][number] for pair in pairs] for side in (0, 1))
             ratio = statistics.median(a / b for a, b in zip(mine, theirs, strict=True))
-            words.append(
-                f"{kind} {1e3 * statistics.median(mine):8.2f} / {1e3 * statistics.median(theirs):8.2f} ms  {ratio:5.2f}"
-            )
+            medians = (1e3 * statistics.median(times) for times in (mine, theirs))
+            words.append("{} {:8.2f} / {:8.2f} ms  {:5.2f}".format(kind, *medians, ratio))
         print(f"{case:10s} {'   '.join(words)}", flush=True)
     for side in sides:
         assert side.stdin is not None

@@ -100,13 +100,12 @@ def stages() -> None:
     profiler.disable()
     stats = pstats.Stats(profiler).stats
     wanted = {
-        "excite": "profile under the contacts",
-        "to_spectra": "forward transforms and continuation",
-        "steady_state": "steady state",
-        "require_stable": "stability",
-        "guideway_influence": "influence of the road beyond the truncation",
-        "couple": "moving FRF, coupling, vehicle",
-        "to_histories": "inverse transforms",
+        "excite": "spline of the profile",
+        "elevation": "profile under the contacts",
+        "spectra": "forward transforms and continuation",
+        "survey": "steady state, stability, truncation",
+        "solve": "moving FRF, coupling, vehicle",
+        "histories": "inverse transforms",
         "labelled": "Dataset",
     }
     taken = {name: cumulative for (_, _, name), (_, _, _, cumulative, _) in stats.items() if name in wanted}

@@ -26,8 +26,8 @@ import scipy.fft
 
 import movingfrf as mf
 from movingfrf.reports.tables import Table
-from movingfrf.results.labels import COUPLED, labelled
-from movingfrf.roughness.excitation import excite
+from movingfrf.results.labels import labelled
+from movingfrf.roughness.excitation import Touch, excite
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.scenarios.template import template
@@ -83,7 +83,7 @@ def reference_case():
 def steps_of_the_coupled_method() -> None:
     """Time 24,000 steps of the coupled method on about 1200 unknowns."""
     scenario = reference_case()
-    vehicle = scenario.vehicle
+    vehicle = scenario.case.vehicle
     road = mf.finite_track(scenario.guideway, first=-30.0, last=270.0, element=0.5)
     march = March(
         guideway=road,
@@ -149,7 +149,7 @@ def besides(scenario: Scenario, step: float) -> dict[str, float]:
     random = np.random.default_rng(0)
     forward = random.normal(size=(2, points))
     inverse = scipy.fft.rfft(random.normal(size=(12, points)))
-    journey, vehicle, road = replace(scenario.journey, time_step=step), scenario.vehicle, scenario.road
+    journey, vehicle, road = replace(scenario.journey, time_step=step), scenario.case.vehicle, scenario.case.road
     result = scenario.run()
     values = {name: result[name].values for name in (*result.data_vars, *result.coords)}
 
@@ -158,19 +158,12 @@ def besides(scenario: Scenario, step: float) -> dict[str, float]:
         scipy.fft.irfft(inverse, points)
 
     def spline() -> None:
-        excite(
-            road.profile,
-            vehicle.positions,
-            [contact.path for contact in vehicle.contacts],
-            speed=journey.speed,
-            samples=journey.samples,
-            time_step=step,
-            start=journey.start,
-            blend=journey.blend,
-        )
+        touch = Touch(**vehicle.touching)
+        seen = excite(road.profile, touch, start=journey.start, distance=journey.distance, blend=journey.blend)
+        seen.elevation(journey.travelled)
 
     def labels() -> None:
-        labelled(values, COUPLED, result.attrs)
+        labelled(values, result.attrs)
 
     return {"transforms": median(transforms), "the road's spline": median(spline), "labels": median(labels)}
 

@@ -19,7 +19,7 @@ def told(file: Path) -> list[str]:
     coefficient = result.contact_force.std("time") / result.static_load
     bounce = float(result.acceleration.sel(dof="bounce").std())
     lines = [
-        f"Road: {scenario.road.description}.",
+        f"Road: {scenario.case.road.description}.",
         f"Speed {3.6 * scenario.journey.speed:.0f} km/h, {scenario.journey.duration:g} s.",
     ]
     for contact, name in enumerate(("Front", "Rear")):

@@ -40,7 +40,7 @@ def test_new_check_run(tmp_path, capsys):
         assert words in told
     assert main(["run", str(file)]) == 0
     told = capsys.readouterr().out
-    for words in ("coefficient", "rear_wheel acceleration", "Findings", "coupling", "result.nc"):
+    for words in ("coefficient", "rear_wheel acceleration", "Findings", "solving", "result.nc"):
         assert words in told
     assert sorted(p.name for p in (tmp_path / "out" / "case").iterdir()) == [
         "report.html",

@@ -17,6 +17,7 @@ import pytest
 import movingfrf as mf
 from movingfrf.commands.main import main
 from movingfrf.scenarios.reading import parse_scenario
+from movingfrf.scenarios.scenario import shortened
 from movingfrf.studies.comparison.comparison import Point, peak_memory, time_at
 from movingfrf.studies.comparison.convergence import converged, maximum_error, relative_l2
 from movingfrf.studies.comparison.files import as_json, convergence_as_json, curve_as_csv, table_as_csv
@@ -162,7 +163,7 @@ def test_the_converged_answer_knows_when_it_has_not_converged():
     """With abrupt loads the order is lower, and the movement says so."""
     smooth = parse_scenario(LOADS)
     abrupt = parse_scenario(LOADS.replace("ramp = 0.2", "ramp = 0.0"))
-    brief = [replace(one, journey=replace(one.journey, duration=0.5)) for one in (smooth, abrupt)]
+    brief = [shortened(one, 0.5) for one in (smooth, abrupt)]
     first, second = (converged(scenario).movement["deflection"] for scenario in brief)
     assert first < 1e-3
     assert second > first
@@ -199,10 +200,7 @@ def test_a_rigid_road_is_refused():
     rigid = mf.Scenario(
         name="rigid",
         text="",
-        guideway=mf.RigidGuideway(),
-        journey=scenario.journey,
-        vehicle=scenario.vehicle,
-        road=scenario.road,
+        case=replace(scenario.case, guideway=mf.RigidGuideway()),
     )
     with pytest.raises(ValueError, match="got a RigidGuideway"):
         mf.compare(rigid)

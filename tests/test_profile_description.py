@@ -340,7 +340,7 @@ duration = 15.0
 def test_a_scenario_reads_and_prepares_a_profile(road):
     file = road.with_suffix(".toml")
     file.write_text(SCENARIO.format(options="paths = [1]\nhigh_pass = 20.0\nmirror_to = 200.0"))
-    made = mf.read_scenario(file).road
+    made = mf.read_scenario(file).case.road
     by_hand = mf.mirrored(
         mf.high_passed(mf.selected(mf.read_profile(road).profile, paths=[1]), wavelength=20.0), length=200.0
     )

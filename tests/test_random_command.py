@@ -44,7 +44,12 @@ def test_three_files_that_say_the_same(tmp_path, capsys):
         assert file.read_bytes() == (usual / file.name).read_bytes(), file.name
     made = mf.read_scenario(scenario)
     direct = mf.random_response(
-        made.guideway, made.vehicle, made.road.spectrum, speed=made.journey.speed, coherence=1.0, exposure=60.0
+        made.guideway,
+        made.case.vehicle,
+        made.case.road.spectrum,
+        speed=made.journey.speed,
+        coherence=1.0,
+        exposure=60.0,
     )
     with xr.open_dataset(named / "random.nc") as reopened:
         assert (reopened.contact_force_density.values == direct.contact_force_density.values).all()

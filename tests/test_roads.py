@@ -36,7 +36,7 @@ PLACE = {"length": LENGTH, "start": START}
 
 
 def road(text):
-    return parse_scenario(CAR + "[roughness]\n" + text).road
+    return parse_scenario(CAR + "[roughness]\n" + text).case.road
 
 
 def faults(text):
@@ -261,7 +261,7 @@ def test_what_a_road_was_made_from_is_told_and_not_fitted(kind):
 
     scenario = parse_scenario(f'{CAR}[roughness]\nkind = "{kind}"\n{SPECTRUM_KINDS[kind][0]}')
     lines = dict(dict(described(scenario))["Roughness"])
-    assert lines["source"] == scenario.road.description
+    assert lines["source"] == scenario.case.road.description
     assert lines["fitted spectrum"] == "none: it was made from the spectrum above"
     assert not any("class" in name for name in lines)
-    assert scenario.run().attrs["spectrum"] == str(scenario.road.spectrum)
+    assert scenario.run().attrs["spectrum"] == str(scenario.case.road.spectrum)

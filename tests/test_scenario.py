@@ -66,15 +66,20 @@ def test_the_template_is_the_reference_case():
         mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9), mf.Spring(stiffness=8e6, damping=3e4)
     )
     assert scenario.guideway == road
-    assert scenario.vehicle.dof_names == ("bounce", "pitch", "front_wheel", "rear_wheel")
-    assert "class A" in scenario.road.description
+    assert scenario.case.vehicle.dof_names == ("bounce", "pitch", "front_wheel", "rear_wheel")
+    assert "class A" in scenario.case.road.description
 
 
 def test_a_scenario_is_the_same_call_as_in_python():
     scenario = parse_scenario(edited(duration=2.0))
     result = scenario.run()
     direct = mf.simulate(
-        scenario.guideway, scenario.vehicle, scenario.road.profile, speed=10.0, duration=2.0, truncation=70.0
+        scenario.guideway,
+        scenario.case.vehicle,
+        scenario.case.road.profile,
+        speed=10.0,
+        duration=2.0,
+        truncation=70.0,
     )
     assert result.attrs["scenario"] == scenario.text
     assert result.drop_attrs().identical(direct.drop_attrs())
@@ -185,22 +190,22 @@ def four_wheels(seeds, **changes):
 def test_a_full_car_and_a_seed_for_each_path():
     """Two paths without anything in common, each the one of its seed; equal seeds make one road of both."""
     scenario = parse_scenario(four_wheels("[0, 1]"))
-    assert scenario.vehicle.dof_names[:3] == ("bounce", "pitch", "roll")
-    profile = scenario.road.profile
+    assert scenario.case.vehicle.dof_names[:3] == ("bounce", "pitch", "roll")
+    profile = scenario.case.road.profile
     assert profile.paths == 2
-    assert scenario.road.description.endswith("seed [0, 1]")
+    assert scenario.case.road.description.endswith("seed [0, 1]")
     for path, seed in enumerate((0, 1)):
-        alone = parse_scenario(four_wheels(f"[{seed}, {seed}]")).road.profile
+        alone = parse_scenario(four_wheels(f"[{seed}, {seed}]")).case.road.profile
         assert (alone.elevation[:, 0] == alone.elevation[:, 1]).all()
         assert (profile.elevation[:, path] == alone.elevation[:, 0]).all()
     assert abs(np.corrcoef(profile.elevation.T)[0, 1]) < 0.3
     # One seed in a list is one path, the same as without a list.
-    one, listed = (parse_scenario(edited(seed=seed)).road.profile for seed in ("1", "[1]"))
+    one, listed = (parse_scenario(edited(seed=seed)).case.road.profile for seed in ("1", "[1]"))
     assert listed.paths == 1
     assert (np.ravel(listed.elevation) == np.ravel(one.elevation)).all()
     result = scenario.run()
     direct = mf.simulate(
-        scenario.guideway, scenario.vehicle, profile, speed=10.0, duration=2.0, truncation=70.0
+        scenario.guideway, scenario.case.vehicle, profile, speed=10.0, duration=2.0, truncation=70.0
     ).drop_attrs()
     assert result.drop_attrs().identical(direct)
     assert np.abs(result.motion.sel(dof="roll")).max() > 1e-5

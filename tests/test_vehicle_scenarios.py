@@ -167,7 +167,7 @@ axle_spacing = 2.56
 
 
 def built(text, **where):
-    return parse_scenario(text + GROUND, **where).vehicle
+    return parse_scenario(text + GROUND, **where).case.vehicle
 
 
 def faults(text):
@@ -354,7 +354,7 @@ def test_check_remarks_on_what_is_in_order(text, words, tmp_path, capsys):
     told = " ".join(capsys.readouterr().out.split())
     assert words in told
     assert ("but a step of 0.05 s resolves only 10 Hz" in told) == (
-        parse_scenario(file.read_text()).vehicle.natural_frequencies.max() > 10
+        parse_scenario(file.read_text()).case.vehicle.natural_frequencies.max() > 10
     )
     assert "in order" in told
 

@@ -210,7 +210,12 @@ FAULTS = [
         "static_loads",
     ),
     Fault("sag counted as motion", "stepping/coupled.py", "motion -= steady.motion", "pass"),
-    Fault("footprint twice as long in time", "stepping/coupled.py", "half = 0.5 * passing", "half = 1.0 * passing"),
+    Fault(
+        "rate of another speed",
+        "stepping/coupled.py",
+        "rate(journey.travelled, journey.speed)",
+        "rate(journey.travelled, 1.0)",
+    ),
     Fault(
         "acceleration at the start missing", "stepping/moving_loads.py", ".T @ forces[0])", ".T @ (0 * forces[0]))"
     ),

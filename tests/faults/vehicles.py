@@ -6,14 +6,12 @@ from tests.faults.fault import Fault
 
 FAULTS = [
     # Coupling.
-    Fault("footprint twice as long", "vehicles/contact.py", "half = 0.5 *", "half = 1.0 *"),
-    Fault("cams twice as far apart", "vehicles/contact.py", "0.5 * self.cams", "1.0 * self.cams"),
+    Fault("footprint twice as long", "_basics/enveloping.py", "half = 0.5 *", "half = 1.0 *"),
+    Fault("cams twice as far apart", "_basics/enveloping.py", "0.5 * cams", "1.0 * cams"),
     # Vehicle.
     Fault("gravity", "vehicles/vehicle.py", "GRAVITY = 9.81", "GRAVITY = 9.80665"),
     Fault("tyre damping missing", "vehicles/dynamics.py", "np.diag(dashpots)", "0.0 * np.diag(dashpots)"),
-    Fault(
-        "inertia sign", "vehicles/dynamics.py", "(self.linear + s * self.square)", "(self.linear - s * self.square)"
-    ),
+    Fault("inertia sign", "vehicles/dynamics.py", "(linear + s * square)", "(linear - s * square)"),
     Fault("rigid motion turned", "vehicles/dynamics.py", "free[bound] = -inverse", "free[bound] = inverse"),
     Fault(
         "inertia above rigid contacts missing",

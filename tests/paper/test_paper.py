@@ -14,7 +14,7 @@ from movingfrf.studies.paper.guideway import _falls_from
 from movingfrf.studies.paper.items import ITEMS, chosen, reproduce
 from movingfrf.studies.paper.load import _enough
 from movingfrf.studies.paper.report import write
-from movingfrf.studies.paper.study import SCENARIOS, Study, scenario
+from movingfrf.studies.paper.study import SCENARIOS, Study, drive, scenario
 
 
 def test_order_is_that_of_the_report():
@@ -74,7 +74,7 @@ def test_scenarios_are_in_order(name, tmp_path, capsys):
 
 def test_both_vehicles_are_one():
     """Left and right wheels of the one add up to the wheels of the other."""
-    flat, wide = scenario("truck").vehicle, scenario("truck_3d").vehicle
+    flat, wide = drive("truck").vehicle, drive("truck_3d").vehicle
     assert wide.static_loads.reshape(2, 2).sum(axis=1) == pytest.approx(flat.static_loads)
     shared = wide.natural_frequencies[[0, 1, 3, 5]]
     assert shared == pytest.approx(flat.natural_frequencies, rel=1e-9)

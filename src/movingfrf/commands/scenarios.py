@@ -137,6 +137,7 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
         from movingfrf.reports.result import render
         from movingfrf.results.files import replacing, save, summary_as_json
         from movingfrf.scenarios.reading import read_scenario
+        from movingfrf.scenarios.scenario import Drive
 
         stages.report("scenario", 0.0)
         scenario = read_scenario(file)
@@ -153,8 +154,8 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
             stages.report("report.html", 0.0)
             page = render(result, guideway=scenario.guideway, scenario_text=scenario.text, title=scenario.name)
             (temporary / "report.html").write_text(page, encoding="utf-8")
-    if scenario.road is not None:
-        console.print(f"Road: {scenario.road.description}\n", soft_wrap=True)
+    if isinstance(scenario.case, Drive):
+        console.print(f"Road: {scenario.case.road.description}\n", soft_wrap=True)
     print_result(console, result, found)
     print_table(console, stages.table())
     for name in ("report.html", "result.nc", "summary.json"):
@@ -194,11 +195,13 @@ def random(
         from movingfrf.response.random import random_response
         from movingfrf.results.files import replacing, save, summary_as_json
         from movingfrf.scenarios.reading import read_scenario
+        from movingfrf.scenarios.scenario import Drive
 
         scenario = read_scenario(file)
-        road = scenario.road
-        if road is None or scenario.vehicle is None:
+        drive = scenario.case
+        if not isinstance(drive, Drive):
             raise ValueError(f"{file}: prescribed loads have no random road; a vehicle and a spectrum are needed")
+        road = drive.road
         if road.spectrum is None:
             raise ValueError(
                 f"{file}: the roughness has no spectrum ({road.description}): it is one road, not all of a kind. "
@@ -211,10 +214,10 @@ def random(
             warnings.simplefilter("ignore", ValidityWarning)
             response = partial(
                 random_response,
-                scenario.guideway,
-                scenario.vehicle,
+                drive.guideway,
+                drive.vehicle,
                 road.spectrum,
-                speed=scenario.journey.speed,
+                speed=drive.journey.speed,
                 coherence=road.coherence,
                 exposure=exposure,
                 progress=stages.report,

@@ -127,6 +127,7 @@ def moving_loads(
     settings = attributes(
         "loaded",
         "Response of a guideway to prescribed moving loads",
+        method="moving-frf",
         speed=speed,
         time_step=time_step,
         truncation=0.5 / time_step if truncation is None else truncation,

@@ -192,6 +192,7 @@ def driven(
     settings = attributes(
         "coupled",
         "Coupled response of a vehicle and a guideway",
+        method="moving-frf",
         **journey.settings,
         truncation=surveyed.truncation.frequency,
         truncation_error=surveyed.truncation.error,

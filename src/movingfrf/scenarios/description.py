@@ -18,7 +18,8 @@ from movingfrf.response.truncation import EVERYWHERE, Truncation
 from movingfrf.results.findings import near_critical
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
-from movingfrf.scenarios.scenario import Scenario
+from movingfrf.scenarios.scenario import Drive, Passage, Scenario
+from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.modes import Mode, vehicle_modes
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -51,14 +52,14 @@ def described(scenario: Scenario) -> list[Section]:
         Headings, each with lines of name and value.
     """
     sections: list[Section] = [("Guideway", _guideway(scenario))]
-    if scenario.vehicle is not None:
-        vehicle, _, vibrations = described_vehicle(scenario.vehicle)
-        sections += [vehicle, ("Contacts in steady travel", _steady_contacts(scenario)), vibrations]
-    if scenario.road is not None:
-        sections.append(("Roughness", _roughness(scenario.road)))
-    if scenario.loads is not None:
-        sections.append(("Loads", _loads(scenario)))
-    return [*sections, ("Run", _run(scenario))]
+    match scenario.case:
+        case Drive() as drive:
+            vehicle, _, vibrations = described_vehicle(drive.vehicle)
+            sections += [vehicle, ("Contacts in steady travel", _steady_contacts(drive)), vibrations]
+            sections.append(("Roughness", _roughness(drive.road)))
+        case Passage() as passage:
+            sections.append(("Loads", _loads(passage)))
+    return [*sections, ("Run", _run(scenario.case))]
 
 
 def remarks(scenario: Scenario) -> list[str]:
@@ -74,10 +75,15 @@ def remarks(scenario: Scenario) -> list[str]:
     list of str
         Sentences; empty if there is nothing to remark.
     """
-    journey, vehicle = scenario.journey, scenario.vehicle
-    found = [finding.message for finding in near_critical(journey.speed, float(scenario.guideway.critical_speed))]
-    if vehicle is None:
-        return found
+    critical_speed = float(scenario.guideway.critical_speed)
+    found = [finding.message for finding in near_critical(scenario.journey.speed, critical_speed)]
+    if isinstance(scenario.case, Drive):
+        found += _remarks_on_vehicle(scenario.case.vehicle, scenario.journey)
+    return found
+
+
+def _remarks_on_vehicle(vehicle: Vehicle, journey: Journey) -> list[str]:
+    found = []
     frequencies, ratios = vehicle.natural_frequencies, vehicle.damping_ratios
     fastest, nyquist = float(frequencies.max(initial=0.0)), 0.5 / journey.time_step
     if fastest > nyquist:
@@ -105,10 +111,9 @@ def _guideway(scenario: Scenario) -> list[tuple[str, str]]:
     ]
 
 
-def _steady_contacts(scenario: Scenario) -> list[tuple[str, str]]:
-    assert scenario.vehicle is not None
-    steady = survey(joined(scenario.guideway, scenario.vehicle, scenario.journey.speed)).steady
-    return _contacts(scenario.vehicle, steady.load, steady.deflection)
+def _steady_contacts(drive: Drive) -> list[tuple[str, str]]:
+    steady = survey(joined(drive.guideway, drive.vehicle, drive.journey.speed)).steady
+    return _contacts(drive.vehicle, steady.load, steady.deflection)
 
 
 def described_vehicle(vehicle: Vehicle) -> list[Section]:
@@ -224,26 +229,22 @@ def _roughness(road: Road) -> list[tuple[str, str]]:
     return lines
 
 
-def _loads(scenario: Scenario) -> list[tuple[str, str]]:
-    loads, journey = scenario.loads, scenario.journey
-    assert loads is not None
-    time = np.arange(journey.samples) * journey.time_step
-    lines = [("observed at", ", ".join(f"{x:g} m" for x in loads.observe))]
-    for position, history in zip(loads.positions, loads.histories, strict=True):
-        force = history(time)
+def _loads(passage: Passage) -> list[tuple[str, str]]:
+    lines = [("observed at", ", ".join(f"{x:g} m" for x in passage.loads.observe))]
+    for position, force in zip(passage.loads.positions, passage.forces.T, strict=True):
         lines.append((f"load at {position:g} m", f"{force.min() / 1e3:.4g} to {force.max() / 1e3:.4g} kN"))
     return lines
 
 
-def _run(scenario: Scenario) -> list[tuple[str, str]]:
-    journey = scenario.journey
-    if scenario.vehicle is not None:
-        line = line_of(journey, scenario.vehicle)
-        channels = len(scenario.vehicle.contacts) + len(scenario.vehicle.dof_names)
-    else:
-        assert scenario.loads is not None
-        line = Line(samples=journey.samples, time_step=journey.time_step)
-        channels = len(scenario.loads.positions) + len(scenario.loads.observe)
+def _run(case: Drive | Passage) -> list[tuple[str, str]]:
+    journey = case.journey
+    match case:
+        case Drive(vehicle=vehicle):
+            line = line_of(journey, vehicle)
+            channels = len(vehicle.contacts) + len(vehicle.dof_names)
+        case Passage(loads=loads):
+            line = Line(samples=journey.samples, time_step=journey.time_step)
+            channels = len(loads.positions) + len(loads.observe)
     memory = TRANSFORM.bytes_per_sample * channels * line.padded
     cut = EVERYWHERE if journey.truncation is None else Truncation(frequency=journey.truncation)
     kept = "the truncation is found" if cut is EVERYWHERE else f"{cut.reach(line.omega())} of them with the road"

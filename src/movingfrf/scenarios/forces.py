@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,61 @@ from movingfrf._basics.smooth import smooth_step
 
 # A force over time [s] → [N].
 History = Callable[[FloatArray], FloatArray]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Loads:
+    """Prescribed forces that travel along.
+
+    Parameters
+    ----------
+    positions : ndarray, shape (load,)
+        Where the loads stand, ahead of the reference point [m].
+    histories : tuple of callable
+        The force of each over time [s] → [N].
+    observe : ndarray, shape (point,)
+        Where the deflection is wanted, ahead of the reference point [m].
+    """
+
+    positions: FloatArray
+    histories: tuple[History, ...]
+    observe: FloatArray
+
+    def at(self, time: FloatArray) -> FloatArray:
+        """Evaluate the forces at some times [s], shape (time, load) [N]."""
+        return np.stack([history(time) for history in self.histories], axis=1)
+
+
+def loads(*, positions: Sequence[float], force: Sequence[History], observe: Sequence[float] | None = None) -> Loads:
+    """Prescribed loads: where they stand, and one force for each.
+
+    Parameters
+    ----------
+    positions : sequence of float
+        Positions ahead of the reference point, which travels along [m].
+    force : sequence of callable
+        Force of each load over time [s] → [N].
+    observe : sequence of float, optional
+        Where the deflection is wanted, ahead of the reference point [m]; None: at the loads.
+
+    Returns
+    -------
+    Loads
+        The loads.
+
+    Raises
+    ------
+    ValueError
+        If there is no load or no observer, or a load without a force.
+    """
+    with checking() as check:
+        at = check.array("positions", positions, "m", (None,))
+        points = at if observe is None else check.array("observe", observe, "m", (None,))
+        if not check.faults and not (at.size and points.size):
+            check.refuse("positions", "must hold at least one position [m], as must observe")
+        if not check.faults and len(force) != at.size:
+            check.refuse("force", f"must stand once per position, {at.size} times, got {len(force)}")
+    return Loads(positions=at, histories=tuple(force), observe=points)
 
 
 def constant(

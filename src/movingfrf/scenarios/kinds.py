@@ -8,11 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
-
-from movingfrf._basics.checks import checking
 from movingfrf.guideways.beams import EulerBernoulliBeam, TimoshenkoBeam
 from movingfrf.guideways.foundations import OnMass, ShearLayer, Spring
 from movingfrf.guideways.rigid import RigidGuideway
@@ -33,14 +30,6 @@ from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.rail import bogie, carriage, wheelset
 from movingfrf.vehicles.trucks import Axle, Unit, WalkingBeam, truck
 from movingfrf.vehicles.vehicle import Vehicle
-
-
-class Loads(NamedTuple):
-    """Prescribed forces that travel along."""
-
-    positions: np.ndarray
-    histories: tuple[forces.History, ...]
-    observe: np.ndarray
 
 
 def profile(
@@ -91,20 +80,6 @@ def vehicle_file(*, file: Path) -> Vehicle:
     return read_vehicle(file)
 
 
-def loads(
-    *, positions: Sequence[float], force: Sequence[forces.History], observe: Sequence[float] | None = None
-) -> Loads:
-    """Prescribed loads: positions ahead of the reference point [m] and one force history for each."""
-    with checking() as check:
-        at = check.array("positions", positions, "m", (None,))
-        points = at if observe is None else check.array("observe", observe, "m", (None,))
-        if not check.faults and not (at.size and points.size):
-            check.refuse("positions", "must hold at least one position [m], as must observe")
-        if not check.faults and len(force) != at.size:
-            check.refuse("force", f"must stand once per position, {at.size} times, got {len(force)}")
-    return Loads(at, tuple(force), points)
-
-
 # Family → kind → what makes it. `kind` is the Python name in snake_case.
 KINDS: dict[str, dict[str, Callable[..., Any]]] = {
     "guideway": {"track": track, "rigid_guideway": RigidGuideway},
@@ -141,7 +116,7 @@ KINDS: dict[str, dict[str, Callable[..., Any]]] = {
     },
     "journey": {"journey": Journey},
     "passage": {"passage": passage},
-    "loads": {"loads": loads},
+    "loads": {"loads": forces.loads},
     "force": {
         "constant": forces.constant,
         "harmonics": forces.harmonics,

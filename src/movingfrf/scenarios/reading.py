@@ -14,7 +14,7 @@ from movingfrf.response.line import require_record
 from movingfrf.response.simulation import line_of
 from movingfrf.roughness.excitation import require_cover
 from movingfrf.scenarios.kinds import DEFAULT_KIND, KINDS, TABLE_LISTS, TABLES
-from movingfrf.scenarios.scenario import Scenario, ScenarioError
+from movingfrf.scenarios.scenario import Drive, Passage, Scenario, ScenarioError
 from movingfrf.vehicles.catalogue import catalogue
 from movingfrf.vehicles.files import read_vehicle
 from movingfrf.vehicles.vehicle import Vehicle
@@ -147,19 +147,20 @@ class _Builder:
         self._check_keys("", tables, wanted, wanted)
         guideway = self.section(tables, "guideway", "guideway")
         journey = self.section(tables, "run", "passage" if with_loads else "journey")
-        if with_loads:
-            found = self.section(tables, "loads", "loads")
-            if found is not None and journey is not None:
-                channels = found.positions.size + found.observe.size
-                self._attempt(
-                    "run:",
-                    lambda: require_record(journey.duration, journey.duration, journey.time_step, channels),
-                )
-            if self.faults:
-                return None
-            return Scenario(
-                name=name, text=text, guideway=guideway, journey=journey, loads=found, folder=self.folder
+        case = (self._passage if with_loads else self._drive)(tables, guideway, journey)
+        return None if case is None else Scenario(name=name, text=text, case=case, folder=self.folder)
+
+    def _passage(self, tables: Mapping[str, Any], guideway: Any, journey: Any) -> Passage | None:
+        found = self.section(tables, "loads", "loads")
+        if found is not None and journey is not None:
+            channels = found.positions.size + found.observe.size
+            self._attempt(
+                "run:",
+                lambda: require_record(journey.duration, journey.duration, journey.time_step, channels),
             )
+        return None if self.faults else Passage(guideway=guideway, loads=found, journey=journey)
+
+    def _drive(self, tables: Mapping[str, Any], guideway: Any, journey: Any) -> Drive | None:
         vehicle = self.section(tables, "vehicle", "vehicle")
         # Some interval, so that the road is checked even where the journey itself is refused.
         interval = (0.0, 1.0)
@@ -171,17 +172,7 @@ class _Builder:
         if vehicle is not None and road is not None and journey is not None:
             paths = vehicle.paths
             self._attempt("roughness:", lambda: require_cover(road.profile, *interval, paths))
-        if self.faults:
-            return None
-        return Scenario(
-            name=name,
-            text=text,
-            guideway=guideway,
-            journey=journey,
-            vehicle=vehicle,
-            road=road,
-            folder=self.folder,
-        )
+        return None if self.faults else Drive(guideway=guideway, vehicle=vehicle, road=road, journey=journey)
 
     def section(self, tables: Mapping[str, Any], key: str, family: str, **given: Any) -> Any:
         """Build one table of the file, if it is there; None, with the reasons in `faults`, if it is refused."""

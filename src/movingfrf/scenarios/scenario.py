@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Fault
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.response.moving_loads import moving_loads
-from movingfrf.response.simulation import simulate
+from movingfrf.response.simulation import driven
 from movingfrf.roughness.road import Road
-from movingfrf.scenarios.kinds import Loads
+from movingfrf.scenarios.forces import Loads
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -42,8 +41,125 @@ class ScenarioError(ValueError):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Drive:
+    """A vehicle on a rough road.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    vehicle : Vehicle
+        The vehicle.
+    road : Road
+        The profile and what it stands for.
+    journey : Journey
+        Speed, duration, steps.
+    """
+
+    guideway: Guideway
+    vehicle: Vehicle
+    road: Road
+    journey: Journey
+
+    @property
+    def sources(self) -> FloatArray:
+        """Where forces act, ahead of the reference point [m]."""
+        return self.vehicle.positions
+
+    @property
+    def receivers(self) -> FloatArray:
+        """Where the deflection is wanted, ahead of the reference point [m]."""
+        return self.vehicle.positions
+
+    def run(self, progress: Progress = silent) -> xr.Dataset:
+        """Compute the response.
+
+        Parameters
+        ----------
+        progress : callable
+            Called with the name of a stage and the fraction of it that is done.
+
+        Returns
+        -------
+        xarray.Dataset
+            What `simulate` returns, with what the road is in its attributes.
+
+        Raises
+        ------
+        SolveError
+            If the case has no meaningful answer.
+        """
+        result = driven(self.guideway, self.vehicle, self.road.profile, self.journey, progress=progress)
+        spectrum = {} if self.road.spectrum is None else {"spectrum": str(self.road.spectrum)}
+        return result.assign_attrs(road=self.road.description, **spectrum)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Passage:
+    """Prescribed loads that travel along a road.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    loads : Loads
+        The loads, and where the deflection is wanted.
+    journey : Journey
+        Speed, duration, steps.
+    """
+
+    guideway: Guideway
+    loads: Loads
+    journey: Journey
+
+    @property
+    def sources(self) -> FloatArray:
+        """Where forces act, ahead of the reference point [m]."""
+        return self.loads.positions
+
+    @property
+    def receivers(self) -> FloatArray:
+        """Where the deflection is wanted, ahead of the reference point [m]."""
+        return self.loads.observe
+
+    @property
+    def forces(self) -> FloatArray:
+        """Forces at the steps of the journey, shape (time, load) [N]."""
+        return self.loads.at(self.journey.times)
+
+    def run(self, progress: Progress = silent) -> xr.Dataset:
+        """Compute the response.
+
+        Parameters
+        ----------
+        progress : callable
+            Called with the name of a stage and the fraction of it that is done.
+
+        Returns
+        -------
+        xarray.Dataset
+            What `moving_loads` returns.
+
+        Raises
+        ------
+        SolveError
+            If the case has no meaningful answer.
+        """
+        return moving_loads(
+            self.guideway,
+            self.forces,
+            self.loads.positions,
+            speed=self.journey.speed,
+            time_step=self.journey.time_step,
+            observe=self.loads.observe,
+            truncation=self.journey.truncation,
+            progress=progress,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Scenario:
-    """A checked scenario, ready to run: a vehicle on a road, or prescribed loads.
+    """A checked scenario, ready to run: what a user wrote, and the case that it says.
 
     Parameters
     ----------
@@ -51,28 +167,26 @@ class Scenario:
         Name of the file, without its ending.
     text : str
         The scenario as it was written.
-    guideway : Guideway
-        The road or track.
-    journey : Journey
-        Speed, duration, steps.
-    vehicle : Vehicle, optional
-        The vehicle; None with prescribed loads.
-    road : Road, optional
-        The profile and what it stands for; None with prescribed loads.
-    loads : Loads, optional
-        The prescribed loads; None with a vehicle.
+    case : Drive or Passage
+        A vehicle on a rough road, or prescribed loads.
     folder : Path
         Folder to which paths in the text are relative.
     """
 
     name: str
     text: str
-    guideway: Guideway
-    journey: Journey
-    vehicle: Vehicle | None = None
-    road: Road | None = None
-    loads: Loads | None = None
+    case: Drive | Passage
     folder: Path = Path()
+
+    @property
+    def guideway(self) -> Guideway:
+        """The road or track."""
+        return self.case.guideway
+
+    @property
+    def journey(self) -> Journey:
+        """Speed, duration, steps."""
+        return self.case.journey
 
     def run(self, progress: Progress = silent) -> xr.Dataset:
         """Compute the response.
@@ -92,37 +206,69 @@ class Scenario:
         SolveError
             If the case has no meaningful answer.
         """
-        journey = self.journey
-        if self.loads is not None:
-            time = np.arange(journey.samples) * journey.time_step
-            result = moving_loads(
-                self.guideway,
-                np.stack([history(time) for history in self.loads.histories], axis=1),
-                self.loads.positions,
-                speed=journey.speed,
-                time_step=journey.time_step,
-                observe=self.loads.observe,
-                truncation=journey.truncation,
-                progress=progress,
-            )
-        else:
-            assert self.vehicle is not None
-            assert self.road is not None
-            result = simulate(
-                self.guideway,
-                self.vehicle,
-                self.road.profile,
-                speed=journey.speed,
-                duration=journey.duration,
-                start=journey.start,
-                time_step=journey.time_step,
-                truncation=journey.truncation,
-                blend=journey.blend,
-                progress=progress,
-            )
-        attributes = {"scenario": self.text}
-        if self.road is not None:
-            attributes["road"] = self.road.description
-            if self.road.spectrum is not None:
-                attributes["spectrum"] = str(self.road.spectrum)
-        return result.assign_attrs(attributes)
+        return self.case.run(progress).assign_attrs(scenario=self.text)
+
+
+def shortened(scenario: Scenario, duration: float) -> Scenario:
+    """Let a scenario end earlier.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The scenario.
+    duration : float
+        Duration, at most its own [s].
+
+    Returns
+    -------
+    Scenario
+        The same but for its duration.
+    """
+    journey = replace(scenario.journey, duration=duration)
+    return replace(scenario, case=replace(scenario.case, journey=journey))
+
+
+def drive_of(scenario: Scenario) -> Drive:
+    """Give the drive that a scenario says.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        A scenario with a vehicle.
+
+    Returns
+    -------
+    Drive
+        The vehicle on its road.
+
+    Raises
+    ------
+    ValueError
+        If its loads are prescribed.
+    """
+    if isinstance(scenario.case, Drive):
+        return scenario.case
+    raise ValueError(f"{scenario.name}: a scenario with a vehicle is wanted, its loads are prescribed")
+
+
+def passage_of(scenario: Scenario) -> Passage:
+    """Give the passage of prescribed loads that a scenario says.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        A scenario with loads.
+
+    Returns
+    -------
+    Passage
+        The loads on their road.
+
+    Raises
+    ------
+    ValueError
+        If it has a vehicle.
+    """
+    if isinstance(scenario.case, Passage):
+        return scenario.case
+    raise ValueError(f"{scenario.name}: a scenario with prescribed loads is wanted, it has a vehicle")

@@ -358,15 +358,19 @@ def prepared_journey(
         else:
             force += vehicle.static_loads - steady.load
             motion -= steady.motion
-        name = "separate iterative method (SIM)" if iteration.tolerance else "coupled method (CDFM)"
+        method, name = (
+            ("sim", "separate iterative method (SIM)") if iteration.tolerance else ("cdfm", "coupled method (CDFM)")
+        )
         settings = attributes(
             "coupled",
             f"Coupled response of a vehicle and a finite road: {name}",
+            method=method,
             **journey.settings,
             datum=seen.datum,
+            run_in=run_in,
+            superposed=int(superposed),
             scheme=repr(row),
-            road_dofs=guideway.dofs,
-            road_spacing=guideway.spacing,
+            **guideway.attributes,
             iterations=trace.iterations,
             findings=[*steady.findings, *find.contact_lost(force + steady.load, journey.time_step)],
         )

@@ -131,11 +131,12 @@ def newmark_loads(
     settings = attributes(
         "loaded",
         "Response of a finite road to prescribed moving loads: Newmark's method",
+        method="newmark",
+        findings=(),
         speed=speed,
         time_step=time_step,
         start=start,
         scheme=repr(row),
-        road_dofs=road.dofs,
-        road_spacing=road.spacing,
+        **road.attributes,
     )
     return labelled(values, settings)

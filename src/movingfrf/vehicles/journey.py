@@ -65,13 +65,13 @@ class Journey:
         return round(self.duration / self.time_step)
 
     @property
-    def time(self) -> FloatArray:
-        """Instants at which the vehicle is observed [s], from zero."""
+    def times(self) -> FloatArray:
+        """Times at which the vehicle is observed, from zero, shape (time,) [s]."""
         return np.arange(self.samples) * self.time_step
 
     @property
     def travelled(self) -> FloatArray:
-        """Distance travelled by then [m]."""
+        """Distance travelled by then, shape (time,) [m]."""
         return self.speed * self.time_step * np.arange(self.samples)
 
     @property
@@ -91,4 +91,4 @@ class Journey:
 
     def coordinates(self, vehicle: Vehicle) -> dict[str, ArrayLike]:
         """Coordinates of a coupled result by their names in the schema: times, contacts, degrees of freedom."""
-        return {"time": self.time, **vehicle.coordinates}
+        return {"time": self.times, **vehicle.coordinates}

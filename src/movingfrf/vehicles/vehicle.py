@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.dynamics import Dynamics, Quadratic, held, parts, split
 
@@ -37,7 +38,7 @@ class Touching(TypedDict):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Vehicle:
+class Vehicle(Remembering):
     """A linear vehicle: M z̈ + C ż + K z on its own, joined to the guideway by its contacts.
 
     Parameters
@@ -176,6 +177,7 @@ class Vehicle:
         return sprung + motion.prescribed.T @ (self.weights - impedance.constant @ sag)
 
     @property
+    @remembered
     def poles(self) -> ComplexArray:
         """Poles on a rigid road [rad/s], one of each conjugate pair, by ascending magnitude."""
         return self.dynamics().poles
@@ -190,8 +192,9 @@ class Vehicle:
         """Damping ratio of each pole, in the order of `natural_frequencies`; 1 for an overdamped mode."""
         return -self.poles.real / np.abs(self.poles)
 
+    @remembered
     def dynamics(self) -> Dynamics:
-        """Prepare the vehicle to be asked what it does at its contacts at any frequency.
+        """Prepare the vehicle, once, to be asked what it does at its contacts at any frequency.
 
         Returns
         -------

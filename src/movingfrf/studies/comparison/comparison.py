@@ -26,7 +26,7 @@ from threadpoolctl import threadpool_limits
 from movingfrf._basics.checks import ValidityWarning
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.scenarios.reading import parse_scenario
-from movingfrf.scenarios.scenario import Scenario
+from movingfrf.scenarios.scenario import Drive, Scenario, shortened
 from movingfrf.studies.comparison.convergence import (
     TARGETS,
     Reference,
@@ -183,8 +183,8 @@ def _quiet() -> Iterator[None]:
 def _warm_up(case: Case, methods: Mapping[str, Method], progress: Progress) -> None:
     """Run each method once, briefly: compiled loops are compiled, modules loaded."""
     journey = case.scenario.journey
-    brief = replace(journey, duration=min(journey.duration, max(TIMING.warm_up, 20 * journey.time_step)))
-    short = replace(case, scenario=replace(case.scenario, journey=brief))
+    brief = min(journey.duration, max(TIMING.warm_up, 20 * journey.time_step))
+    short = replace(case, scenario=shortened(case.scenario, brief))
     for number, (name, method) in enumerate(methods.items()):
         progress(f"loading {name}", number / len(methods))
         method.prepare(short)()
@@ -332,7 +332,7 @@ def _measure_memory(asked: Mapping[str, Any]) -> int:
     """Measure the peak in this process."""
     scenario = parse_scenario(asked["text"], folder=asked["folder"])
     case = Case(scenario=scenario, time_step=asked["time_step"], element=asked["element"], around=asked["around"])
-    method = (FOR_VEHICLE if scenario.loads is None else FOR_LOADS)[asked["method"]]
+    method = (FOR_VEHICLE if isinstance(scenario.case, Drive) else FOR_LOADS)[asked["method"]]
     with threadpool_limits(limits=1), _quiet():
         _warm_up(case, {asked["method"]: method}, silent)
         tracemalloc.start()

@@ -12,7 +12,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.scenarios.scenario import Scenario
+from movingfrf.scenarios.scenario import Drive, Scenario
 from movingfrf.studies.comparison.methods import DISCRETISATION, Case, elements, newmark, stepped
 
 if TYPE_CHECKING:
@@ -68,9 +68,9 @@ def quantities(result: xr.Dataset, scenario: Scenario) -> Quantities:
         Dynamic contact force [N], deflection without the sag [m], acceleration of the degrees of freedom that touch
         the road [m/s²]; the deflection alone under prescribed loads.
     """
-    if scenario.vehicle is None:
+    if not isinstance(scenario.case, Drive):
         return {"deflection": result.deflection.values}
-    wheels = np.flatnonzero(np.abs(np.asarray(scenario.vehicle.contact_map)).any(axis=0))
+    wheels = np.flatnonzero(np.abs(np.asarray(scenario.case.vehicle.contact_map)).any(axis=0))
     return {
         "contact_force": result.contact_force.values,
         "deflection": result.deflection.values - result.static_deflection.values,
@@ -101,7 +101,7 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
         If the answer does not converge.
     """
     step, element = scenario.journey.time_step, elements(scenario)[0]
-    prepare = stepped if scenario.loads is None else newmark
+    prepare = stepped if isinstance(scenario.case, Drive) else newmark
 
     def solved(level: int, around: float) -> Quantities:
         case = Case(scenario=scenario, time_step=step / 2**level, element=element / 2**level, around=around)
@@ -198,8 +198,8 @@ def aligned(result: xr.Dataset, case: Case, reference: Reference) -> tuple[Quant
     mine, its = (1, round(ratio)) if ratio >= 1 else (round(1 / ratio), 1)
     pairs = {name: (found[name][::mine], reference.quantities[name][::its]) for name in found}
     count = min(len(values) for pair in pairs.values() for values in pair)
-    if case.scenario.vehicle is not None:
+    if isinstance(case.scenario.case, Drive):
         # At the end of the journey a footprint reaches over road that nobody knows.
-        ahead = max(contact.footprint for contact in case.scenario.vehicle.contacts) / (2 * case.journey.speed)
+        ahead = max(contact.footprint for contact in case.scenario.case.vehicle.contacts) / (2 * case.journey.speed)
         count -= math.ceil(ahead / max(case.time_step, reference.time_step))
     return {name: a[:count] for name, (a, _) in pairs.items()}, {name: b[:count] for name, (_, b) in pairs.items()}

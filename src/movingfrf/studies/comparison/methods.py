@@ -19,7 +19,7 @@ from movingfrf.guideways.track import Track
 from movingfrf.response.moving_loads import moving_loads
 from movingfrf.response.simulation import simulate
 from movingfrf.roughness.profile import Profile
-from movingfrf.scenarios.scenario import Scenario
+from movingfrf.scenarios.scenario import Drive, Passage, Scenario, drive_of, passage_of
 from movingfrf.stepping.coupled import prepared_journey
 from movingfrf.stepping.duhamel import duhamel, duhamel_loads
 from movingfrf.stepping.exchange import SOLVED, Iteration, numba_is_there
@@ -94,39 +94,24 @@ class Case:
     @property
     def places(self) -> FloatArray:
         """Where contacts, or loads and observers, stand, ahead of the reference point [m]."""
-        if self.scenario.loads is not None:
-            return np.concatenate([self.scenario.loads.positions, self.scenario.loads.observe])
-        assert self.scenario.vehicle is not None
-        return self.scenario.vehicle.positions
+        return np.concatenate([self.scenario.case.sources, self.scenario.case.receivers])
 
     @property
     def offsets(self) -> FloatArray:
         """Every distance from a contact or load to a contact or observer [m]."""
-        loads = self.scenario.loads
-        sources = self.places if loads is None else loads.positions
-        receivers = self.places if loads is None else loads.observe
-        return np.unique(np.round(receivers[:, None] - sources, 9))
-
-    def forces(self) -> FloatArray:
-        """Prescribed forces at this case's steps, shape (time, load) [N]."""
-        assert self.scenario.loads is not None
-        at = np.arange(self.journey.samples) * self.time_step
-        return np.stack([history(at) for history in self.scenario.loads.histories], axis=1)
+        return np.unique(np.round(self.scenario.case.receivers[:, None] - self.scenario.case.sources, 9))
 
     def driven(self) -> tuple[tuple[Vehicle, Profile], dict[str, Any]]:
         """Give vehicle and profile, and the journey as keywords, as every coupled method takes them."""
-        assert self.scenario.vehicle is not None
-        assert self.scenario.road is not None
-        journey = self.journey
+        drive, journey = drive_of(self.scenario), self.journey
         how = {name: getattr(journey, name) for name in ("speed", "duration", "start", "time_step", "blend")}
-        return (self.scenario.vehicle, self.scenario.road.profile), how
+        return (drive.vehicle, drive.road.profile), how
 
     def loaded(self) -> tuple[tuple[FloatArray, FloatArray], dict[str, Any]]:
         """Give forces and positions, and the rest as keywords, as every method for prescribed loads takes them."""
-        assert self.scenario.loads is not None
-        loads, journey = self.scenario.loads, self.journey
+        loads, journey = passage_of(self.scenario).loads, self.journey
         how = {"speed": journey.speed, "time_step": journey.time_step, "observe": loads.observe}
-        return (self.forces(), loads.positions), how
+        return (loads.at(journey.times), loads.positions), how
 
     def finite(self, *, travels: bool) -> FiniteGuideway:
         """Cut out of the track what the journey needs: all of it, or what travels along."""
@@ -134,7 +119,7 @@ class Case:
         first, last = self.places.min() - around, self.places.max() + around
         if not travels:
             journey = self.journey
-            before = DISCRETISATION.run_in * journey.speed if self.scenario.loads is None else 0.0
+            before = DISCRETISATION.run_in * journey.speed if isinstance(self.scenario.case, Drive) else 0.0
             first += journey.start - before
             last += journey.start + journey.speed * journey.time_step * journey.samples
         # Nodes at multiples of the element, wherever the track ends: its length must not change the mesh.
@@ -151,7 +136,7 @@ class Case:
 def _transformed(case: Case, guideway: Guideway) -> Solve:
     """Solve in the frequency domain, on any guideway."""
     truncation = case.journey.truncation
-    if case.scenario.loads is not None:
+    if isinstance(case.scenario.case, Passage):
         given, how = case.loaded()
         return lambda: moving_loads(guideway, *given, truncation=truncation, **how)
     parts, travel = case.driven()
@@ -180,7 +165,7 @@ def _duhamel(case: Case) -> Solve:
         offsets=case.offsets,
         time_step=case.time_step / per_step,
     )
-    if case.scenario.loads is not None:
+    if isinstance(case.scenario.case, Passage):
         given, how = case.loaded()
         return lambda: duhamel_loads(struck, *given, **how)
     parts, travel = case.driven()
@@ -325,7 +310,8 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
     ValueError
         If a method is unknown or does not suit the scenario, or the guideway cannot be divided into elements.
     """
-    known, others = (FOR_VEHICLE, FOR_LOADS) if scenario.loads is None else (FOR_LOADS, FOR_VEHICLE)
+    with_vehicle = isinstance(scenario.case, Drive)
+    known, others = (FOR_VEHICLE, FOR_LOADS) if with_vehicle else (FOR_LOADS, FOR_VEHICLE)
     guideway = scenario.guideway
     if not isinstance(guideway, Track) or not isinstance(guideway.beam, EulerBernoulliBeam):
         kind = type(guideway.beam if isinstance(guideway, Track) else guideway).__name__
@@ -333,20 +319,19 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
             "guideway must be a track with an Euler–Bernoulli beam, since all methods but the first divide it into "
             f"finite elements, got a {kind}"
         )
-    vehicle = scenario.vehicle
-    if vehicle is not None and np.isinf(vehicle.springs).any():
+    if isinstance(scenario.case, Drive) and np.isinf(scenario.case.vehicle.springs).any():
         raise ValueError(
             "the vehicle has rigid contacts (stiffness = inf), which only the moving FRF knows, so there is "
             "nothing to compare: give each contact a finite stiffness [N/m], as hertzian_stiffness does for a "
             "wheel on a rail"
         )
     # 40 m of road have no room for a vehicle longer than 16 m: what strikes them is then not among the usual ones.
-    long = vehicle is not None and np.ptp(vehicle.positions) > 16.0
+    long = with_vehicle and np.ptp(scenario.case.sources) > 16.0
     usual = [name for name, method in known.items() if method.usual and not (long and method.strikes)]
     wanted = usual if names is None else list(names)
     unknown = [name for name in wanted if name not in known]
     if unknown or not wanted:
-        what = "prescribed loads" if scenario.vehicle is None else "a vehicle"
+        what = "a vehicle" if with_vehicle else "prescribed loads"
         hint = nearest(unknown[0], known) if unknown and unknown[0] not in others else ""
         raise ValueError(
             f"methods for a scenario with {what} are {', '.join(known)}; got {', '.join(unknown) or 'none'}{hint}"

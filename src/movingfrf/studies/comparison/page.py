@@ -13,6 +13,7 @@ from movingfrf.reports.curves import GREY, PALETTE
 from movingfrf.reports.figures import SIZE, Illustration, blank, drawing, illustrated
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Column, Row, Setting, Table
+from movingfrf.scenarios.scenario import Drive
 from movingfrf.stepping.exchange import numba_is_there
 from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
 from movingfrf.studies.comparison.convergence import TARGETS
@@ -87,7 +88,9 @@ def _name(quantity: str) -> str:
 
 def _summary(comparison: Comparison) -> str:
     journey = comparison.scenario.journey
-    what = "prescribed loads on a road" if comparison.scenario.vehicle is None else "a vehicle on a rough road"
+    what = (
+        "a vehicle on a rough road" if isinstance(comparison.scenario.case, Drive) else "prescribed loads on a road"
+    )
     words = (
         f"One case, {what} at {plain(journey.speed)} m/s for {plain(journey.duration)} s, solved by "
         f"{len(comparison.rows)} methods in one process on one thread. Errors are those of the "
@@ -330,7 +333,7 @@ def _method(comparison: Comparison) -> list[str]:
             "factorised once, ends of the road absorbing. On a road that is the same everywhere the weight travels "
             "in a run of its own and only what the roughness adds is stepped afterwards: with equal elements that "
             "is several times more accurate than stepping both together."
-            if comparison.scenario.vehicle is not None
+            if isinstance(comparison.scenario.case, Drive)
             else f"{', '.join(stepped)}: cubic Hermite elements, average acceleration (Newmark), what is constant "
             "factorised once, ends of the road absorbing."
         )
@@ -338,7 +341,7 @@ def _method(comparison: Comparison) -> list[str]:
         *lines,
         "Every method gets the same cubic spline of the road's surface, with its rate of change ṙ = v r′, and "
         "includes the convective term v ∂w/∂x wherever a contact has a dashpot."
-        if comparison.scenario.vehicle is not None
+        if isinstance(comparison.scenario.case, Drive)
         else "Every method gets the same forces at its own steps.",
         "The converged answer is computed by time stepping alone, on a road that travels with the vehicle: "
         "elements and step are halved together and the answers extrapolated, (4 fine − coarse)/3, until the answer "

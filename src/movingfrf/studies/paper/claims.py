@@ -10,6 +10,7 @@ from movingfrf._basics.wording import number
 from movingfrf.reports.tables import Column
 from movingfrf.response.simulation import line_of
 from movingfrf.response.truncation import Truncation
+from movingfrf.scenarios.scenario import drive_of
 from movingfrf.stepping.duhamel import duhamel_loads
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, moving_impulse_response
@@ -91,8 +92,7 @@ def cheaper(study: Study) -> Outcome:
     """Claim 2: how much cheaper, at equal accuracy."""
     compared = study.compared
     equal = compared.equal_error
-    journey, vehicle = compared.scenario.journey, compared.scenario.vehicle
-    assert vehicle is not None
+    journey, vehicle = compared.scenario.journey, drive_of(compared.scenario).vehicle
     line = line_of(journey, vehicle)
     assert journey.truncation is not None
     kept = Truncation(frequency=journey.truncation).reach(line.omega())

@@ -21,7 +21,7 @@ from movingfrf.stepping.finite_plate import finite_plate, struck_plate
 from movingfrf.studies.paper.drawing import STROKES, canvas, curve, legend_outside, logarithmic, title
 from movingfrf.studies.paper.outcome import AGREEMENT, DataTable, Outcome, Plot, Statement, Verdict, verdict
 from movingfrf.studies.paper.stated import STATED, SUBSTITUTES
-from movingfrf.studies.paper.study import Study, quiet, relative, scenario
+from movingfrf.studies.paper.study import Study, drive, quiet, relative, scenario
 from movingfrf.vehicles.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -54,9 +54,7 @@ class Models:
     @cached_property
     def vehicle(self) -> Vehicle:
         """The vehicle with seven degrees of freedom."""
-        vehicle = scenario("truck_3d").vehicle
-        assert vehicle is not None
-        return vehicle
+        return drive("truck_3d").vehicle
 
     def struck(self, transverse: float = 1.0) -> SampledGuideway:
         """Strike 40 m of plate as in the paper: the moving FRF between all contacts."""
@@ -79,9 +77,7 @@ class Models:
 
     def stepped(self, name: str) -> xr.Dataset:
         """Step the same by the coupled method, on a plate that travels along."""
-        case, at = scenario(name), self.vehicle.positions
-        assert case.vehicle is not None
-        assert case.road is not None
+        case, at = drive(name), self.vehicle.positions
         around = 16.0  # how far the plate reaches around the vehicle [m]
         plate = finite_plate(
             self.study.guideway,
@@ -196,8 +192,7 @@ def in_three_dimensions(study: Study) -> Outcome:
         basins[transverse] = models.basin(transverse=transverse)
     stepped = models.stepped("truck_3d")
     agreement = _differences(paired(same), paired(stepped))
-    road = scenario("truck_3d_paths").road
-    assert road is not None
+    road = drive("truck_3d_paths").road
     mean = replace(road.profile, elevation=np.asarray(road.profile.elevation).mean(axis=1))
     from_mean = _differences(paired(apart), plane(models.driven(study.struck, "truck", mean)))
     real, stiff, basin, straight = found[1.0], found[stiffnesses[-1]], basins[1.0], models.basin(poisson=0.0)

@@ -7,7 +7,7 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.resources import files
 from typing import TYPE_CHECKING
@@ -26,7 +26,7 @@ from movingfrf.response.moving_loads import moving_loads
 from movingfrf.response.simulation import simulate
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.reading import parse_scenario
-from movingfrf.scenarios.scenario import Scenario
+from movingfrf.scenarios.scenario import Drive, Scenario, drive_of, passage_of, shortened
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import struck_track
@@ -59,6 +59,22 @@ def scenario(name: str) -> Scenario:
     """
     text = files("movingfrf").joinpath("studies", "paper", "scenarios", f"{name}.toml").read_text(encoding="utf-8")
     return parse_scenario(text, name=name, source=f"{name}.toml")
+
+
+def drive(name: str) -> Drive:
+    """Give the vehicle on its road that one of these scenarios says.
+
+    Parameters
+    ----------
+    name : str
+        Name of the scenario.
+
+    Returns
+    -------
+    Drive
+        The vehicle on its road.
+    """
+    return drive_of(scenario(name))
 
 
 @dataclass(frozen=True)
@@ -95,9 +111,7 @@ class Study:
     @cached_property
     def wheelbase(self) -> float:
         """Distance between the axles [m]."""
-        vehicle = scenario("truck").vehicle
-        assert vehicle is not None
-        return float(np.ptp(vehicle.positions))
+        return float(np.ptp(drive("truck").vehicle.positions))
 
     @cached_property
     def offsets(self) -> FloatArray:
@@ -171,9 +185,7 @@ class Study:
         profile: Profile | None = None,
     ) -> xr.Dataset:
         """Response of the vehicle and the road, by the moving FRF; on another profile or for another time."""
-        case = scenario(name)
-        assert case.vehicle is not None
-        assert case.road is not None
+        case = drive(name)
         journey = case.journey
         with quiet():
             return simulate(
@@ -218,7 +230,7 @@ class Study:
         """All methods on the vehicle's journey; in the quick version its first second, each run once."""
         case, brief = scenario("truck_times"), self.quick
         if brief:
-            case = replace(case, journey=replace(case.journey, duration=1.0))
+            case = shortened(case, 1.0)
         methods = ["moving-frf", "moving-frf-fe", "moving-frf-fe-plain", "duhamel", "cdfm", "cdfm-weight", "sim"]
         return compare(case, methods, memory=not brief, runs=1 if brief else 3, progress=self.progress)
 
@@ -226,10 +238,7 @@ class Study:
 @cache
 def history(name: str) -> FloatArray:
     """Load of a scenario at its steps, shape (time, 1) [N]."""
-    case = scenario(name)
-    assert case.loads is not None
-    at = np.arange(case.journey.samples) * case.journey.time_step
-    return np.stack([force(at) for force in case.loads.histories], axis=1)
+    return passage_of(scenario(name)).forces
 
 
 @contextmanager

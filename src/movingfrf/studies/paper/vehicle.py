@@ -19,7 +19,7 @@ from movingfrf.studies.comparison.methods import elements
 from movingfrf.studies.paper.drawing import STROKES, canvas, curve, legend_outside, logarithmic, title
 from movingfrf.studies.paper.outcome import AGREEMENT, DataTable, Outcome, Plot, Statement, Verdict, verdict
 from movingfrf.studies.paper.stated import STATED, SUBSTITUTES
-from movingfrf.studies.paper.study import Study, closed_form, relative, scenario, timed
+from movingfrf.studies.paper.study import Study, closed_form, drive, relative, scenario, timed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,8 +42,7 @@ NAMES = {
 
 def profile(study: Study) -> Outcome:
     """Show the class A profile and its spectrum against ISO 8608."""
-    road = scenario("truck").road
-    assert road is not None
+    road = drive("truck").road
     distance, elevation = np.asarray(road.profile.distance), np.asarray(road.profile.elevation)
     n, density = welch(elevation, float(distance[1] - distance[0]), segments=8)
     fit = fit_iso(n, density)

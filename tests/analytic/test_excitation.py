@@ -1,0 +1,107 @@
+"""What a contact sees of a road: in space against plain averages, by wavenumber against waves in space."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import movingfrf as mf
+from movingfrf.roughness.excitation import Touch, excite
+
+STEP = 0.02
+SURFACE = mf.realise(mf.IsoRoad.of_class("B", band=(0.02, 3.0)), length=60.0, step=STEP, seed=4, start=-10.0)
+# Plain, with a footprint, with cams, with both; the second ahead of the first.
+POSITIONS, FOOTPRINTS, CAMS = (
+    np.array([0.0, 1.3, -2.0, 0.7]),
+    np.array([0, 0.35, 0, 0.2]),
+    np.array([0, 0, 0.6, 0.5]),
+)
+TOUCH = Touch(positions=POSITIONS, paths=[0, 0, 0, 0], footprints=FOOTPRINTS, cams=CAMS)
+
+
+def seen_at(profile, place, footprint, cams):
+    """Average a spline by adaptive quadrature, knot by knot."""
+    along, half = profile.along(0), 0.5 * footprint
+    found = []
+    for cam in (place - 0.5 * cams, place + 0.5 * cams):
+        knots = profile.stations[(profile.stations > cam - half) & (profile.stations < cam + half)]
+        edges = np.r_[cam - half, knots, cam + half]
+        pieces = [quad(along, a, b, epsabs=1e-15)[0] for a, b in pairwise(edges)]
+        found.append(sum(pieces) / footprint if footprint else float(along(cam)))
+    return 0.5 * sum(found)
+
+
+def test_footprints_and_cams_average_the_spline():
+    excitation = excite(SURFACE, TOUCH, start=2.0, distance=30.0, blend=0.0)
+    travelled = np.array([0.0, 0.513, 7.77, 29.3])
+    datum = float(SURFACE.along(0)(3.3))
+    assert excitation.datum == pytest.approx(datum, rel=1e-12)
+    expected = [
+        [seen_at(SURFACE, 2.0 + x + far, footprint, cams) - datum for far in travelled]
+        for x, footprint, cams in zip(POSITIONS, FOOTPRINTS, CAMS, strict=True)
+    ]
+    np.testing.assert_allclose(excitation.elevation(travelled), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("blend", [0.0, 5.0])
+def test_the_rate_is_the_slope_of_the_elevation_times_the_speed(blend):
+    """By central differences of fourth order, away from knots' jumps in the third derivative by their size only."""
+    excitation = excite(SURFACE, TOUCH, start=2.0, distance=30.0, blend=blend)
+    travelled, d = np.linspace(0.3, 29.0, 400), 1e-4
+    values = [excitation.elevation(travelled + n * d) for n in (-2, -1, 1, 2)]
+    slope = (values[0] - 8 * values[1] + 8 * values[2] - values[3]) / (12 * d)
+    rate = excitation.rate(travelled, 12.0)
+    np.testing.assert_allclose(rate, 12.0 * slope, atol=2e-7 * np.abs(rate).max())
+
+
+def test_up_to_the_foremost_start_the_road_is_flat_and_then_sets_in():
+    excitation = excite(SURFACE, TOUCH, start=2.0, distance=30.0, blend=5.0)
+    free = excite(SURFACE, TOUCH, start=2.0, distance=30.0, blend=0.0)
+    travelled = np.linspace(0.0, 20.0, 2001)
+    for row, position in enumerate(POSITIONS):
+        at = travelled + position - POSITIONS.max()  # from the foremost contact's start on
+        share = np.clip(at / 5.0, 0.0, 1.0)
+        share = share**3 * (10 - 15 * share + 6 * share**2)
+        np.testing.assert_allclose(
+            excitation.elevation(travelled)[row], share * free.elevation(travelled)[row], atol=1e-15
+        )
+
+
+def test_a_wave_in_space_is_the_wave_by_wavenumber():
+    wavelength, amplitude = 1.7, 2e-3
+    wave = mf.harmonic(amplitude=amplitude, wavelength=wavelength, length=60.0, start=-10.0)
+    travelled, kappa = np.linspace(0.0, 30.0, 777), 2 * np.pi / wavelength
+    excitation = excite(wave, TOUCH, start=0.0, distance=30.0, blend=0.0)
+    seen = excitation.elevation(travelled) + excitation.datum
+    expected = (TOUCH.waves(np.array([kappa])) * -1j * amplitude * np.exp(1j * kappa * travelled)).real
+    # A spline through fifty points a wave.
+    np.testing.assert_allclose(seen, expected, atol=3e-6 * amplitude)
+
+
+def test_beyond_its_ends_a_profile_goes_straight_on():
+    """A footprint that reaches out finds the slope of the end; a line has no other continuation."""
+    slope = mf.Profile(np.linspace(0.0, 10.0, 101), 0.03 * np.linspace(0.0, 10.0, 101))
+    touch = Touch(positions=np.zeros(1), paths=[0], footprints=np.array([0.4]), cams=np.array([0.6]))
+    excitation = excite(slope, touch, start=0.0, distance=10.0, blend=0.0)
+    travelled = np.array([0.0, 0.1, 5.0, 9.9, 10.0])
+    np.testing.assert_allclose(excitation.elevation(travelled)[0], 0.03 * travelled, atol=1e-14)
+    np.testing.assert_allclose(excitation.rate(travelled, 10.0)[0], 0.3, atol=1e-13)
+
+
+def test_paths_of_a_profile_without_columns_are_one():
+    touch = Touch(positions=np.zeros(2), paths=[0, 3], footprints=np.zeros(2), cams=np.zeros(2))
+    left, right = excite(SURFACE, touch, start=0.0, distance=10.0, blend=0.0).elevation(np.linspace(0, 10, 50))
+    np.testing.assert_array_equal(left, right)
+
+
+def test_far_above_the_sea_a_footprint_averages_as_well():
+    """The area under a road grows with its height; what is averaged is about the datum."""
+    high = mf.Profile(SURFACE.stations, SURFACE.columns[:, 0] + 4000.0)
+    travelled = np.linspace(0.0, 30.0, 200)
+    low, raised = (
+        excite(surface, TOUCH, start=2.0, distance=30.0, blend=0.0).elevation(travelled)
+        for surface in (SURFACE, high)
+    )
+    # As many digits as elevations of 4000 m have.
+    np.testing.assert_allclose(raised, low, atol=1e-11)
