@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from movingfrf._basics.arrays import ComplexArray
 
@@ -21,6 +22,7 @@ class Batch:
     most: int = 4096  # frequencies [256 to 65 536]
     entries: int = 2**18  # of the matrices of all of them: of many contacts, fewer frequencies [2**14 to 2**22]
     fewest: int = 16  # frequencies, of however many contacts [1 to 256]
+    looped: int = 16  # columns of a matrix, up to which BLAS gains nothing from so many small ones [2 to 32]
 
     def frequencies(self, entries: int) -> int:
         """Frequencies to solve at a time with so many entries of a matrix at each."""
@@ -32,7 +34,14 @@ BATCH = Batch()
 
 def unthreaded(entries: int) -> AbstractContextManager[object]:
     """Keep LAPACK to one thread: many small matrices gain nothing by two, and lose tenfold if one has to wait."""
-    return threadpool_limits(limits=1) if entries > 4 else nullcontext()
+    limit: AbstractContextManager[object] = _threads().limit(limits=1) if entries > 4 else nullcontext()
+    return limit
+
+
+@cache
+def _threads() -> ThreadpoolController:
+    """Find NumPy's thread pools, once: that takes as long as a quarter car's response."""
+    return ThreadpoolController()
 
 
 def applied(matrices: ComplexArray, columns: ComplexArray) -> ComplexArray:
@@ -50,12 +59,15 @@ def applied(matrices: ComplexArray, columns: ComplexArray) -> ComplexArray:
     ndarray, shape (*case, i, frequency)
         Products.
     """
-    if matrices.shape[1] > 2:
+    if matrices.shape[1] > BATCH.looped:
         first = np.moveaxis(matrices, -1, 0), np.moveaxis(columns.reshape(-1, *columns.shape[-2:]), (2, 1), (0, 1))
         product = np.matmul(*(np.ascontiguousarray(part) for part in first))
         return np.moveaxis(product, (0, 1), (2, 1)).reshape(*columns.shape[:-2], *matrices.shape[::2])
-    # Up to two contacts the loops over i, j and cases are the short ones: let the processor loop over frequency.
-    return np.add.reduce([matrices[:, j] * columns[..., j, None, :] for j in range(matrices.shape[1])])
+    # The loops over i, j and cases are the short ones: let the processor loop over frequency.
+    product = matrices[:, 0] * columns[..., 0, None, :]
+    for j in range(1, matrices.shape[1]):
+        product += matrices[:, j] * columns[..., j, None, :]
+    return product
 
 
 def multiplied(left: ComplexArray, right: ComplexArray) -> ComplexArray:
