@@ -13,7 +13,7 @@ from scipy.special import gammaln
 
 from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import Checks, checking, shown
-from movingfrf.results.labels import RANDOM_QUANTITIES
+from movingfrf.results.labels import RANDOM_QUANTITIES, kind_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -356,5 +356,5 @@ def spectral_fatigue(
 
 def check_random(check: Checks, result: object) -> None:
     """Refuse what is not the response to a random road."""
-    if "contact_force_density" not in getattr(result, "data_vars", ()):
+    if kind_of(result) != "random":
         check.refuse("result", "must be the response to a random road, from `random_response`")

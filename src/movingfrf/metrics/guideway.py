@@ -12,6 +12,7 @@ from movingfrf._basics.checks import checking
 from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import in_moving_frame, wavenumbers
+from movingfrf.results.labels import attributes, labelled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,8 +26,8 @@ BAYS = np.array(
 # Decibels of a ratio of amplitudes of e.
 NEPER = 20 / np.log(10)
 
-# Form → power of iω on the receptance, unit.
-FORMS = {"receptance": (0, "m/N"), "mobility": (1, "m/s/N"), "accelerance": (2, "m/s2/N")}
+# Form → power of iω on the receptance.
+POWERS = {"receptance": 0, "mobility": 1, "accelerance": 2}
 
 
 def receptance(
@@ -255,8 +256,6 @@ def wave_decay_rate(track: Track, frequency: ArrayLike) -> FloatArray:
 
 
 def _response(guideway: Guideway, frequency: ArrayLike, ahead: ArrayLike, speed: float, form: str) -> xr.Dataset:
-    import xarray as xr
-
     require_guideway(guideway)
     with checking() as check:
         f = check.array("frequency", frequency, "Hz", (None,))
@@ -264,17 +263,13 @@ def _response(guideway: Guideway, frequency: ArrayLike, ahead: ArrayLike, speed:
             check.refuse("frequency", f"must not be negative, got {f.min():g} Hz")
         at = check.array("ahead", np.atleast_1d(np.asarray(ahead)), "m", (None,))
         check.finite("speed", speed, "m/s")
-    power, units = FORMS[form]
     omega = 2 * np.pi * f
-    values: NumberArray = (1j * omega[:, None]) ** power * guideway.moving_frf(at, speed, omega)
-    names = ("frequency", "ahead")
-    attributes = {"units": units, "long_name": f"{form} of the guideway, down per unit force down"}
-    return xr.Dataset(
-        {form: (names, values, attributes)},
-        {
-            "frequency": ("frequency", f, {"units": "Hz", "long_name": "frequency in the moving frame"}),
-            "omega": ("frequency", omega, {"units": "rad/s", "long_name": "angular frequency in the moving frame"}),
-            "ahead": ("ahead", at, {"units": "m", "long_name": "receiver minus source, ahead positive"}),
-        },
-        {"form": form, "speed": float(speed), "guideway": repr(guideway)},
+    values: NumberArray = (1j * omega[:, None]) ** POWERS[form] * guideway.moving_frf(at, speed, omega)
+    settings = attributes(
+        form,
+        f"{form.capitalize()} of a guideway",
+        form=form,
+        speed=speed,
+        guideway=repr(guideway),
     )
+    return labelled({"frequency": f, "omega": omega, "ahead": at, form: values}, settings)

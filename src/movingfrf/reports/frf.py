@@ -15,7 +15,7 @@ from movingfrf.guideways.guideway import Guideway
 from movingfrf.reports.axes import fit_height, legend_above, mark_truncation, upper_end
 from movingfrf.reports.curves import INK, PALETTE
 from movingfrf.reports.figures import SIZE, Illustration, blank, illustrated
-from movingfrf.results.labels import time_step_of
+from movingfrf.results.labels import kind_of, time_step_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -65,7 +65,7 @@ def frf_figures(result: xr.Dataset, guideway: Guideway | None, offsets: list[flo
     legend_above(frf_amplitude(frequency, values, offsets, above, truncation=mark))
     frf_phase(frequency, values, offsets, below, truncation=mark)
     above.set_xlabel("")
-    beyond = "the road counts as rigid" if "contact_force" in result else "the response is left out"
+    beyond = "the road counts as rigid" if kind_of(result) == "coupled" else "the response is left out"
     return [illustrated("frf", "Moving FRFs of the road", _frf_words(values, offsets, mark, beyond), figure)]
 
 
@@ -74,7 +74,7 @@ def _frf_end(result: xr.Dataset, frf: Callable[[FloatArray, Sequence[float]], Co
     step, truncation = time_step_of(result), result.attrs.get("truncation", 0.0)
     nyquist = 0.5 / step
     kept = max(FRF_AXES.beyond * truncation, FRF_AXES.least) if 0 < truncation < nyquist else nyquist
-    if "contact_force" in result:
+    if kind_of(result) == "coupled":
         spectra = (spectral_density(deflection, step) for deflection in result.deflection.values.T)
         ends = [upper_end(*spectrum) for spectrum in spectra if spectrum[0].size]
         if ends:

@@ -15,7 +15,7 @@ from movingfrf.reports.loaded import loaded_method, loaded_summary, loaded_table
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Setting
 from movingfrf.reports.ways import is_stepped, way_settings
-from movingfrf.results.labels import duration_of, time_step_of
+from movingfrf.results.labels import duration_of, kind_of, time_step_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,7 +40,7 @@ def render(result: xr.Dataset, *, guideway: Guideway | None, scenario_text: str 
     str
         One HTML page without references to anything outside it. Equal input gives equal text.
     """
-    coupled = "contact_force" in result
+    coupled = kind_of(result) == "coupled"
     with drawing():
         figures = of_coupled(result, guideway) if coupled else of_loads(result, guideway)
     return page(
@@ -95,7 +95,7 @@ def _settings(result: xr.Dataset) -> list[Setting]:
 def _truncation_settings(result: xr.Dataset) -> list[Setting]:
     if "truncation" not in result.attrs:
         return []
-    truncation, coupled = result.attrs["truncation"], "contact_force" in result
+    truncation, coupled = result.attrs["truncation"], kind_of(result) == "coupled"
     if not coupled:
         if truncation >= 0.5 / time_step_of(result):
             return [Setting("Truncation", "none", "every frequency of the record is kept")]
@@ -124,7 +124,7 @@ def _findings(result: xr.Dataset) -> list[str]:
 
 
 def _no_findings(result: xr.Dataset) -> str:
-    coupled = "contact_force" in result
+    coupled = kind_of(result) == "coupled"
     if is_stepped(result):
         return "No findings: contact is kept throughout." if coupled else "No findings."
     if coupled:

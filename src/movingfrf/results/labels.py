@@ -114,12 +114,29 @@ for _name, (_place, _units, _words) in RANDOM_QUANTITIES.items():
     RANDOM |= _random_labels(_name, _place, _units, _words)
 
 
+# What a guideway answers to a unit force: displacement, velocity or acceleration.
+_ALONG: dict[str, Label] = {
+    "frequency": Label(("frequency",), "Hz", "frequency in the moving frame", coordinate=True),
+    "omega": Label(("frequency",), "rad/s", "angular frequency in the moving frame", coordinate=True),
+    "ahead": Label(("ahead",), "m", "receiver minus source, ahead positive", coordinate=True),
+}
+
+
+def _per_force(form: str, units: str) -> dict[str, Label]:
+    """Response of a guideway per unit force."""
+    words = f"{form} of the guideway, down per unit force down"
+    return {**_ALONG, form: Label(("frequency", "ahead"), units, words)}
+
+
 # Kind of a result, as its attribute says it → names, dimensions and units of its variables.
 SCHEMAS: dict[str, dict[str, Label]] = {
     "coupled": COUPLED,
     "loaded": LOADED,
     "transfer": TRANSFER,
     "random": RANDOM,
+    "receptance": _per_force("receptance", "m/N"),
+    "mobility": _per_force("mobility", "m/s/N"),
+    "accelerance": _per_force("accelerance", "m/s2/N"),
 }
 
 
@@ -161,13 +178,13 @@ def attributes(
     }
 
 
-def kind_of(result: xr.Dataset) -> str | None:
-    """Say what kind of result a Dataset is; None if it is none.
+def kind_of(result: object) -> str | None:
+    """Say what kind of result something is; None if it is none.
 
     Parameters
     ----------
-    result : xarray.Dataset
-        Anything.
+    result : xarray.Dataset or anything
+        What was given as a result.
 
     Returns
     -------
