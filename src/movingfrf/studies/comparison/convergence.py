@@ -13,7 +13,8 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.scenarios.scenario import Drive, Scenario
-from movingfrf.studies.comparison.methods import DISCRETISATION, Case, elements, newmark, stepped
+from movingfrf.scenarios.stepped import DISCRETISATION, elements
+from movingfrf.studies.comparison.methods import Case, newmark, stepped
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -100,7 +101,7 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
     SolveError
         If the answer does not converge.
     """
-    step, element = scenario.journey.time_step, elements(scenario)[0]
+    step, element = scenario.journey.time_step, elements(scenario.guideway)[0]
     prepare = stepped if isinstance(scenario.case, Drive) else newmark
 
     def solved(level: int, around: float) -> Quantities:
