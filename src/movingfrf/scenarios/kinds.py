@@ -20,6 +20,8 @@ from movingfrf.roughness.road import Road
 from movingfrf.roughness.spectra.coherence import ExponentialCoherence, IsotropicCoherence
 from movingfrf.scenarios import forces
 from movingfrf.scenarios.roads import ROADS, SPECTRA
+from movingfrf.stepping.finite_plate import finite_plate
+from movingfrf.stepping.finite_track import finite_track
 from movingfrf.vehicles.assembly import Body, Hinge, Suspension, assemble
 from movingfrf.vehicles.cars import full_car, half_car, quarter_car
 from movingfrf.vehicles.catalogue import catalogue
@@ -82,7 +84,12 @@ def vehicle_file(*, file: Path) -> Vehicle:
 
 # Family → kind → what makes it. `kind` is the Python name in snake_case.
 KINDS: dict[str, dict[str, Callable[..., Any]]] = {
-    "guideway": {"track": track, "rigid_guideway": RigidGuideway},
+    "guideway": {
+        "track": track,
+        "rigid_guideway": RigidGuideway,
+        "finite_track": finite_track,
+        "finite_plate": finite_plate,
+    },
     "beam": {"euler_bernoulli_beam": EulerBernoulliBeam, "timoshenko_beam": TimoshenkoBeam},
     "foundation": {"spring": Spring, "shear_layer": ShearLayer, "on_mass": OnMass},
     "vehicle": {
@@ -141,6 +148,7 @@ DEFAULT_KIND = {
 
 # Arguments that are tables themselves, and those that are lists of tables, with their family.
 TABLES = {
+    "track": "guideway",
     "beam": "beam",
     "foundation": "foundation",
     "above": "foundation",
