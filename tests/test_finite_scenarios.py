@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 import movingfrf as mf
 from movingfrf.commands.main import main
 from movingfrf.scenarios.reading import parse_scenario
-from movingfrf.studies.comparison.convergence import converged
+from movingfrf.studies.comparison.convergence import converged, quantities
 from movingfrf.studies.comparison.files import convergence_as_json
 from movingfrf.studies.comparison.methods import FOR_LOADS, FOR_VEHICLE, Case, chosen
 from movingfrf.studies.comparison.page import render
@@ -158,6 +158,8 @@ def test_an_endless_road_is_stepped_as_it_is_compared():
         case = Case(scenario=scenario, time_step=1e-3, element=0.25)
         assert result.drop_attrs().identical(FOR_VEHICLE[method].prepare(case)().drop_attrs())
         assert apart(result.contact_force.values, exact.contact_force.values) < 1e-3
+        # Room for a second of run-in, and for 14 lengths over which the road bends.
+        assert result.attrs["road_first"] == pytest.approx(-2.05 - 10.0 - 14 * (4 * 1.573e7 / 8e6) ** 0.25, abs=0.3)
     loads = parse_scenario(LOADS)
     result = loads.run(method="newmark")
     case = Case(scenario=loads, time_step=1e-3, element=0.25)
@@ -246,6 +248,18 @@ def test_a_finite_road_is_compared_with_itself(bridge, tmp_path, capsys):
         assert words in page
 
 
+def test_what_counts_as_static_on_a_finite_road_makes_no_difference():
+    scenario = parse_scenario(OSCILLATOR)
+    result = scenario.run(method="cdfm")
+    other = result.assign(
+        static_load=result.static_load + 1e3,
+        contact_force=result.contact_force - 1e3,
+        static_deflection=result.static_deflection + 1.0,
+    )
+    compared, again = quantities(result, scenario), quantities(other, scenario)
+    assert all(np.allclose(compared[name], again[name], rtol=1e-9) for name in compared)
+
+
 def test_of_a_road_given_by_matrices_the_step_alone_is_halved():
     scenario = parse_scenario(OSCILLATOR)
     matrices = replace(scenario.guideway, finer=None)
@@ -279,6 +293,7 @@ def test_finer_roads_have_elements_within_elements():
             row = one.rows(np.array([9.3]), 0, 0.4).toarray()[0]
             sags.append(row @ np.linalg.solve(one.stiffness.toarray(), row))
         assert sags[0] * (1 - 1e-9) < sags[1] < 1.05 * sags[0]
+    assert plate.finer(2).dofs == 4 * 51 * 5 - 2 * 2 * 5  # two times as many elements across as well
 
 
 @pytest.mark.slow
