@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import movingfrf as mf
-from movingfrf.scenarios.kinds import KINDS
+from movingfrf.scenarios.kinds import DRIVE, TABLES
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.template import template
 
@@ -287,7 +287,7 @@ def test_all_faults_at_once():
         ({"step": 0.2}, "roughness.step", "half of the shortest wave"),
         ({"step": 1e-9}, "roughness:", "GiB of memory"),
         ({"seed": -1}, "roughness.seed", "whole number"),
-        ({"kind": "3"}, "guideway.kind", "must be one of track, rigid_guideway, got 3"),
+        ({"kind": "3"}, "guideway.kind", "must be one of track, rigid_guideway, finite_track, finite_plate, got 3"),
     ],
 )
 def test_impossible_values(changes, name, message):
@@ -389,6 +389,33 @@ def test_nonsense_is_refused_and_never_a_defect(changes, cut):
 
 
 def test_every_kind_is_reachable_and_names_its_arguments():
-    for family, kinds in KINDS.items():
-        for kind, factory in kinds.items():
-            assert callable(factory), (family, kind)
+    for family in TABLES.values():
+        for name, kind in family.kinds.items():
+            assert name == kind.name
+            assert callable(kind.make)
+            assert kind.words, name
+            for key in kind.keys:
+                assert key.words, (name, key.name)
+                assert (key.type in TABLES) + (key.item in TABLES) + key.is_file <= 1, (name, key.name)
+
+
+def test_each_of_several_keys_has_its_own_unit():
+    """One docstring line may say two arguments: `primary_stiffness, primary_damping : float`, [N/m, N s/m]."""
+    units = {key.name: key.unit for key in TABLES[mf.Vehicle].kinds["bogie"].keys}
+    assert (units["primary_stiffness"], units["primary_damping"]) == ("N/m", "N s/m")
+    assert (units["secondary_stiffness"], units["frame_mass"]) == ("N/m", "kg")
+
+
+def test_keys_say_what_the_signature_says():
+    keys = {key.name: key for key in TABLES[mf.Vehicle].kinds["truck"].keys}
+    assert keys["units"].needed
+    assert keys["units"].item in TABLES
+    assert not keys["sides"].needed
+    assert keys["sides"].type == tuple[float, float]  # None is the default, no value
+    assert keys["hitches"].default == ()
+    assert [key.name for kind in DRIVE["run"].kinds.values() for key in kind.keys if not key.needed] == [
+        "start",
+        "time_step",
+        "truncation",
+        "blend",
+    ]

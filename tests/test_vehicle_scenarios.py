@@ -10,7 +10,7 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.commands.main import main
-from movingfrf.scenarios.kinds import KINDS
+from movingfrf.scenarios.kinds import VEHICLE
 from movingfrf.scenarios.reading import named_vehicle, parse_scenario
 from movingfrf.studies.comparison.methods import chosen
 from movingfrf.vehicles.catalogue import CATALOGUE
@@ -178,7 +178,7 @@ def faults(text):
 
 def test_every_kind_of_vehicle_has_a_text():
     elsewhere = {"quarter_car", "half_car", "full_car", "vehicle", "vehicle_file", "carriage"}
-    assert set(TEXTS) | elsewhere == set(KINDS["vehicle"])
+    assert set(TEXTS) | elsewhere == set(VEHICLE.kinds)
 
 
 @pytest.mark.parametrize("kind", TEXTS)

@@ -60,6 +60,8 @@ REPORTS = [
     "tests/test_report.py",
     "tests/test_cli.py",
 ]
+# These where it lies in what a user writes.
+SCENARIOS = ["tests/test_scenario.py", "tests/test_roads.py", "tests/test_vehicle_scenarios.py"]
 SHOWN = ("reports/", "commands/", "results/files", "_basics/wording")
 
 # These first where the fault lies in the independent way, and last otherwise.
@@ -86,6 +88,8 @@ def selection(fault: Fault | None) -> list[str]:
     independent = file.startswith(("stepping/", "guideways/sampled"))
     if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE
+    if file.startswith("scenarios/"):
+        return SCENARIOS + SELECTION
     if file.startswith(SHOWN):
         return REPORTS + SELECTION + REFERENCE
     chosen = REFERENCE + SELECTION if independent else SELECTION + REFERENCE

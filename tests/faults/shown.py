@@ -12,6 +12,10 @@ FAULTS = [
         "last - first, start=first, **given)",
         "last - first, **given)",
     ),
+    # What a table of a scenario can be.
+    Fault("key that may be left out", "scenarios/kind.py", "=_without_none(", "=("),
+    Fault("unit of the neighbour", "scenarios/kind.py", "[{units[place]}", "[{units[0]}"),
+    Fault("part of a road for no journey", "scenarios/reading.py", "key.item == family.makes", "False"),
     # Profiles from files.
     Fault("rows for columns", "_basics/matlab_file.py", 'reshape(shape, order="F")', "reshape(shape)"),
     Fault("packed bombs let in", "_basics/matlab_file.py", "most or limit)", "most or 0)"),

@@ -149,7 +149,6 @@ def run(
         from movingfrf.results.files import replacing, save, summary_as_json
         from movingfrf.scenarios.reading import read_scenario
         from movingfrf.scenarios.scenario import Drive
-        from movingfrf.stepping.finite_guideway import FiniteGuideway
 
         stages.report("scenario", 0.0)
         scenario = read_scenario(file)
@@ -164,8 +163,7 @@ def run(
             save(result, temporary / "result.nc")
             (temporary / "summary.json").write_text(summary_as_json(result, found), encoding="utf-8")
             stages.report("report.html", 0.0)
-            guideway = None if isinstance(scenario.guideway, FiniteGuideway) else scenario.guideway
-            page = render(result, guideway=guideway, scenario_text=scenario.text, title=scenario.name)
+            page = render(result, guideway=scenario.endless, scenario_text=scenario.text, title=scenario.name)
             (temporary / "report.html").write_text(page, encoding="utf-8")
     if isinstance(scenario.case, Drive):
         console.print(f"Road: {scenario.case.road.description}", soft_wrap=True)

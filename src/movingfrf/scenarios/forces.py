@@ -47,7 +47,7 @@ def loads(*, positions: Sequence[float], force: Sequence[History], observe: Sequ
     positions : sequence of float
         Positions ahead of the reference point, which travels along [m].
     force : sequence of callable
-        Force of each load over time [s] → [N].
+        Force of each load [N], over time [s].
     observe : sequence of float, optional
         Where the deflection is wanted, ahead of the reference point [m]; None: at the loads.
 
@@ -124,8 +124,12 @@ def harmonics(
         Phases at t = 0 [rad]; zero by default.
     mean : float
         Constant part [N].
-    switch_on, switch_off, ramp : float
-        As for `constant` [s].
+    switch_on : float
+        When it begins [s].
+    switch_off : float, optional
+        When it has ended [s]; None: never.
+    ramp : float
+        Time over which it rises and falls smoothly [s]; 0 switches abruptly.
 
     Returns
     -------
@@ -178,8 +182,12 @@ def random_sum(
         Seed: the same seed gives the same force.
     mean : float
         Constant part [N].
-    switch_on, switch_off, ramp : float
-        As for `constant` [s].
+    switch_on : float
+        When it begins [s].
+    switch_off : float, optional
+        When it has ended [s]; None: never.
+    ramp : float
+        Time over which it rises and falls smoothly [s]; 0 switches abruptly.
 
     Returns
     -------

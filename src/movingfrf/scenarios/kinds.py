@@ -1,24 +1,26 @@
-"""What the tables of a scenario can be: family and kind → what makes it.
+"""What the tables of a scenario can be: families of kinds.
 
-The Python signatures are the schema. A table's `kind` names a function or class, its keys are the keyword
-arguments, and the checks are those that the function makes itself; a new kind is one line in `KINDS`.
+A table's `kind` names a function or class, its keys are the keyword arguments, and the checks are those that the
+function makes itself. A new kind is one line in its family; an argument whose type a family makes is a table.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
 
-from movingfrf.guideways.beams import EulerBernoulliBeam, TimoshenkoBeam
-from movingfrf.guideways.foundations import OnMass, ShearLayer, Spring
+from movingfrf.guideways.beams import Beam, EulerBernoulliBeam, TimoshenkoBeam
+from movingfrf.guideways.foundations import Foundation, OnMass, ShearLayer, Spring
+from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.rigid import RigidGuideway
-from movingfrf.guideways.track import track
+from movingfrf.guideways.track import Track, track
 from movingfrf.roughness.files import read_profile
 from movingfrf.roughness.preparation import prepared
 from movingfrf.roughness.road import Road
-from movingfrf.roughness.spectra.coherence import ExponentialCoherence, IsotropicCoherence
+from movingfrf.roughness.spectra.coherence import Coherence, ExponentialCoherence, IsotropicCoherence
+from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.scenarios import forces
+from movingfrf.scenarios.kind import Family, Kind, chosen, family, keys_of
 from movingfrf.scenarios.roads import ROADS, SPECTRA
 from movingfrf.stepping.finite_plate import finite_plate
 from movingfrf.stepping.finite_track import finite_track
@@ -33,140 +35,83 @@ from movingfrf.vehicles.rail import bogie, carriage, wheelset
 from movingfrf.vehicles.trucks import Axle, Unit, WalkingBeam, truck
 from movingfrf.vehicles.vehicle import Vehicle
 
+READING = keys_of(read_profile)
+PREPARING = keys_of(prepared, without=["profile"])
 
-def profile(
-    *,
-    interval: tuple[float, float],
-    file: Path,
-    format: str | None = None,
-    columns: Sequence[str | int] | None = None,
-    across: Sequence[float] | None = None,
-    crop_rims: bool = False,
-    repair_gaps: float | None = None,
-    paths: Sequence[int] | None = None,
-    first: float | None = None,
-    last: float | None = None,
-    spike: float | None = None,
-    detrend: int | None = None,
-    high_pass: float | None = None,
-    step: float | None = None,
-    repeat_to: float | None = None,
-    mirror_to: float | None = None,
-) -> Road:
+
+def profile(*, interval: tuple[float, float], **given: Any) -> Road:
     """Read a measured profile, and prepare it as far as options ask for it; the description says what was done."""
-    found, understood = read_profile(
-        file, format=format, columns=columns, across=across, crop_rims=crop_rims, repair_gaps=repair_gaps
-    )
-    ready = prepared(
-        found,
-        paths=paths,
-        first=first,
-        last=last,
-        spike=spike,
-        detrend=detrend,
-        high_pass=high_pass,
-        step=step,
-        repeat_to=repeat_to,
-        mirror_to=mirror_to,
-    )
+    found, understood = read_profile(**chosen(given, READING))
+    ready = prepared(found, **chosen(given, PREPARING))
     return Road(ready, "; ".join([understood, *ready.steps]))
 
 
-def passage(*, speed: float, duration: float, time_step: float = 1e-3, truncation: float | None = None) -> Journey:
-    """How prescribed loads travel: no vehicle, hence no profile to start on."""
-    return Journey(speed=speed, duration=duration, time_step=time_step, truncation=truncation)
+PROFILE = Kind(
+    name="profile", make=profile, keys=(*READING, *PREPARING), words="A measured profile, read from a file."
+)
 
+BEAM = family("beam", Beam, EulerBernoulliBeam, TimoshenkoBeam)
+FOUNDATION = family("foundation", Foundation, Spring, ShearLayer, OnMass)
+TRACK = family("track", Track, track)
+GUIDEWAY = family("guideway", Guideway, track, RigidGuideway, finite_track, finite_plate, default="track")
+VEHICLE = family(
+    "vehicle",
+    Vehicle,
+    half_car,
+    full_car,
+    quarter_car,
+    truck,
+    wheelset,
+    bogie,
+    carriage,
+    convoy,
+    train,
+    seated,
+    on_paths,
+    catalogue,
+    assemble,
+    Vehicle,
+    Kind.of(read_vehicle, name="vehicle_file"),
+)
+CONTACT = family("contact", Contact, Contact)
+BODY = family("body", Body, Body)
+SUSPENSION = family("suspension", Suspension, Suspension)
+HINGE = family("hinge", Hinge, Hinge)
+UNIT = family("unit", Unit, Unit)
+AXLE = family("axle", Axle | WalkingBeam, Axle, WalkingBeam, default="axle")
+ROUGHNESS = family("roughness", Road, *ROADS, PROFILE)
+SPECTRUM = family("spectrum", Spectrum, *SPECTRA)
+COHERENCE = family("coherence", Coherence, IsotropicCoherence, ExponentialCoherence)
+LOADS = family("loads", forces.Loads, forces.loads)
+FORCE = family("force", forces.History, forces.constant, forces.harmonics, forces.random_sum, forces.tabulated)
 
-def vehicle_file(*, file: Path) -> Vehicle:
-    """Read a vehicle from a file of matrices."""
-    return read_vehicle(file)
-
-
-# Family → kind → what makes it. `kind` is the Python name in snake_case.
-KINDS: dict[str, dict[str, Callable[..., Any]]] = {
-    "guideway": {
-        "track": track,
-        "rigid_guideway": RigidGuideway,
-        "finite_track": finite_track,
-        "finite_plate": finite_plate,
-    },
-    "beam": {"euler_bernoulli_beam": EulerBernoulliBeam, "timoshenko_beam": TimoshenkoBeam},
-    "foundation": {"spring": Spring, "shear_layer": ShearLayer, "on_mass": OnMass},
-    "vehicle": {
-        "half_car": half_car,
-        "full_car": full_car,
-        "quarter_car": quarter_car,
-        "truck": truck,
-        "wheelset": wheelset,
-        "bogie": bogie,
-        "carriage": carriage,
-        "convoy": convoy,
-        "train": train,
-        "seated": seated,
-        "on_paths": on_paths,
-        "catalogue": catalogue,
-        "assemble": assemble,
-        "vehicle": Vehicle,
-        "vehicle_file": vehicle_file,
-    },
-    "contact": {"contact": Contact},
-    "body": {"body": Body},
-    "suspension": {"suspension": Suspension},
-    "hinge": {"hinge": Hinge},
-    "unit": {"unit": Unit},
-    "axle": {"axle": Axle, "walking_beam": WalkingBeam},
-    "roughness": {**ROADS, "profile": profile},
-    "spectrum": SPECTRA,
-    "coherence": {
-        "isotropic_coherence": IsotropicCoherence,
-        "exponential_coherence": ExponentialCoherence,
-    },
-    "journey": {"journey": Journey},
-    "passage": {"passage": passage},
-    "loads": {"loads": forces.loads},
-    "force": {
-        "constant": forces.constant,
-        "harmonics": forces.harmonics,
-        "random_sum": forces.random_sum,
-        "tabulated": forces.tabulated,
-    },
+# Type of an argument → the family of the table that stands for it.
+TABLES: Mapping[Any, Family] = {
+    one.makes: one
+    for one in (
+        BEAM,
+        FOUNDATION,
+        TRACK,
+        GUIDEWAY,
+        VEHICLE,
+        CONTACT,
+        BODY,
+        SUSPENSION,
+        HINGE,
+        UNIT,
+        AXLE,
+        ROUGHNESS,
+        SPECTRUM,
+        COHERENCE,
+        LOADS,
+        FORCE,
+    )
 }
 
-# The kind that a table has if it does not say.
-DEFAULT_KIND = {
-    "guideway": "track",
-    "contact": "contact",
-    "body": "body",
-    "suspension": "suspension",
-    "hinge": "hinge",
-    "unit": "unit",
-    "axle": "axle",
-    "journey": "journey",
-    "passage": "passage",
-    "loads": "loads",
-}
-
-# Arguments that are tables themselves, and those that are lists of tables, with their family.
-TABLES = {
-    "track": "guideway",
-    "beam": "beam",
-    "foundation": "foundation",
-    "above": "foundation",
-    "below": "foundation",
-    "car": "vehicle",
-    "vehicle": "vehicle",
-    "spectrum": "spectrum",
-    "coherence": "coherence",
-}
-
-TABLE_LISTS = {
-    ("vehicle", "contacts"): "contact",
-    ("vehicle", "bodies"): "body",
-    ("vehicle", "suspensions"): "suspension",
-    ("vehicle", "hinges"): "hinge",
-    ("vehicle", "units"): "unit",
-    ("vehicle", "vehicles"): "vehicle",
-    ("unit", "axles"): "axle",
-    ("loads", "force"): "force",
-    ("roughness", "parts"): "roughness",
+# The tables of a scenario with a vehicle, and of one with prescribed loads, which have no profile to start on.
+DRIVE = {"guideway": GUIDEWAY, "vehicle": VEHICLE, "roughness": ROUGHNESS, "run": family("run", Journey, Journey)}
+PASSAGE = {
+    "guideway": GUIDEWAY,
+    "loads": LOADS,
+    "run": family("run", Journey, Kind.of(Journey, without=["start", "blend"])),
 }

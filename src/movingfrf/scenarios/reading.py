@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
@@ -13,7 +12,8 @@ from movingfrf._basics.checks import Fault, ParameterError, nearest, shown
 from movingfrf.response.line import require_record
 from movingfrf.response.simulation import spectral_grid
 from movingfrf.roughness.excitation import require_cover
-from movingfrf.scenarios.kinds import DEFAULT_KIND, KINDS, TABLE_LISTS, TABLES
+from movingfrf.scenarios.kind import Family, Key, Kind
+from movingfrf.scenarios.kinds import DRIVE, PASSAGE, TABLES, VEHICLE
 from movingfrf.scenarios.scenario import Drive, Passage, Scenario, ScenarioError
 from movingfrf.vehicles.catalogue import catalogue
 from movingfrf.vehicles.files import read_vehicle
@@ -69,7 +69,7 @@ def named_vehicle(name: str | Path) -> Vehicle:
     if "vehicle" not in tables:
         return read_vehicle(path)
     builder = _Builder(path.parent)
-    vehicle: Vehicle | None = builder.section(tables, "vehicle", "vehicle")
+    vehicle: Vehicle | None = builder.section(tables, "vehicle", VEHICLE)
     if builder.faults or vehicle is None:
         raise ScenarioError(str(path), builder.faults)
     return vehicle
@@ -139,66 +139,69 @@ class _Builder:
     def scenario(self, tables: dict[str, Any], name: str, text: str) -> Scenario | None:
         """Build everything; None if that was not possible, with the reasons in `faults`."""
         with_loads = "loads" in tables
-        wanted = {"guideway", "run", *(["loads"] if with_loads else ["vehicle", "roughness"])}
-        for key in ("vehicle", "roughness"):
-            if with_loads and key in tables:
+        wanted = PASSAGE if with_loads else DRIVE
+        for key in DRIVE.keys() - PASSAGE.keys() if with_loads else ():
+            if key in tables:
                 self.faults.append(Fault(key, "and [loads] exclude each other: forces are computed or prescribed"))
                 return None
         self._check_keys("", tables, wanted, wanted)
-        guideway = self.section(tables, "guideway", "guideway")
-        journey = self.section(tables, "run", "passage" if with_loads else "journey")
-        case = (self._passage if with_loads else self._drive)(tables, guideway, journey)
+        case = (self._passage if with_loads else self._drive)(tables)
         return None if case is None else Scenario(name=name, text=text, case=case, folder=self.folder)
 
-    def _passage(self, tables: Mapping[str, Any], guideway: Any, journey: Any) -> Passage | None:
-        found = self.section(tables, "loads", "loads")
-        if found is not None and journey is not None:
-            channels = found.positions.size + found.observe.size
+    def _passage(self, tables: Mapping[str, Any]) -> Passage | None:
+        made = {key: self.section(tables, key, family) for key, family in PASSAGE.items()}
+        loads, journey = made["loads"], made["run"]
+        if loads is not None and journey is not None:
+            channels = loads.positions.size + loads.observe.size
             self._attempt(
                 "run:",
                 lambda: require_record(journey.duration, journey.duration, journey.time_step, channels),
             )
-        return None if self.faults else Passage(guideway=guideway, loads=found, journey=journey)
+        return None if self.faults else Passage(guideway=made["guideway"], loads=loads, journey=journey)
 
-    def _drive(self, tables: Mapping[str, Any], guideway: Any, journey: Any) -> Drive | None:
-        vehicle = self.section(tables, "vehicle", "vehicle")
+    def _drive(self, tables: Mapping[str, Any]) -> Drive | None:
+        guideway = self.section(tables, "guideway", DRIVE["guideway"])
+        vehicle = self.section(tables, "vehicle", DRIVE["vehicle"])
+        journey = self.section(tables, "run", DRIVE["run"])
         # Some interval, so that the road is checked even where the journey itself is refused.
         interval = (0.0, 1.0)
         if journey is not None and vehicle is not None:
             interval = journey.interval(vehicle)
             if self._attempt("run:", lambda: spectral_grid(journey, vehicle)) is False:
                 return None
-        road = self.section(tables, "roughness", "roughness", interval=interval)
+        road = self.section(tables, "roughness", DRIVE["roughness"], interval=interval)
         if vehicle is not None and road is not None and journey is not None:
             paths = vehicle.paths
             self._attempt("roughness:", lambda: require_cover(road.profile, *interval, paths))
         return None if self.faults else Drive(guideway=guideway, vehicle=vehicle, road=road, journey=journey)
 
-    def section(self, tables: Mapping[str, Any], key: str, family: str, **given: Any) -> Any:
+    def section(self, tables: Mapping[str, Any], key: str, family: Family, **given: Any) -> Any:
         """Build one table of the file, if it is there; None, with the reasons in `faults`, if it is refused."""
         return self._built(tables[key], family, key, **given) if key in tables else None
 
-    def _built(self, table: Any, family: str, path: str, **given: Any) -> Any:
-        """Build one table, or return None and leave the reasons in `faults`."""
+    def _built(self, table: Any, family: Family, path: str, **given: Any) -> Any:
+        """Build one table, or return None and leave the reasons in `faults`.
+
+        What is `given` beside the table's own keys goes to whatever makes the kind, and to parts of its family.
+        """
         if not isinstance(table, dict):
             self.faults.append(Fault(path, f"must be a table [{path}], got {shown(table)}"))
             return None
-        factory = self._factory(table, family, path)
-        if factory is None:
+        kind = self._kind(table, family, path)
+        if kind is None:
             return None
-        parameters = {n: p for n, p in inspect.signature(factory).parameters.items() if n not in given}
-        required = {n for n, p in parameters.items() if p.default is p.empty}
-        known = [*parameters, *(["kind"] if family not in DEFAULT_KIND or len(KINDS[family]) > 1 else [])]
-        broken = self._check_keys(f"{path}.", table, known, required)
+        known = [*(key.name for key in kind.keys), *(["kind"] if len(family.kinds) > 1 else [])]
+        broken = self._check_keys(f"{path}.", table, known, {key.name for key in kind.keys if key.needed})
         arguments: dict[str, Any] = dict.fromkeys(broken)
-        for key in parameters.keys() & table.keys():
-            before = len(self.faults)
-            annotation = parameters[key].annotation
-            arguments[key] = self._argument(family, key, table[key], annotation, f"{path}.{key}", given)
-            if len(self.faults) > before:
-                broken.add(key)
+        for key in kind.keys:
+            if key.name in table:
+                before = len(self.faults)
+                parts = given if key.item == family.makes else {}
+                arguments[key.name] = self._argument(key, table[key.name], f"{path}.{key.name}", **parts)
+                if len(self.faults) > before:
+                    broken.add(key.name)
         try:
-            made = factory(**arguments, **given)
+            made = kind.make(**arguments, **given)
         except ParameterError as error:
             for fault in error.faults:
                 # What is missing or broken has been reported; its stand-in None need not be.
@@ -216,32 +219,27 @@ class _Builder:
             return None
         return None if broken else made
 
-    def _factory(self, table: Mapping[str, Any], family: str, path: str) -> Callable[..., Any] | None:
-        kind = table.get("kind", DEFAULT_KIND.get(family))
-        kinds = KINDS[family]
-        if kind is None:
+    def _kind(self, table: Mapping[str, Any], family: Family, path: str) -> Kind | None:
+        name, kinds = table.get("kind", family.default), family.kinds
+        if name is None:
             self.faults.append(Fault(f"{path}.kind", f"is missing; it is one of {', '.join(kinds)}"))
-        elif not isinstance(kind, str) or kind not in kinds:
-            hint = nearest(str(kind), kinds)
-            self.faults.append(Fault(f"{path}.kind", f"must be one of {', '.join(kinds)}, got {shown(kind)}{hint}"))
+        elif not isinstance(name, str) or name not in kinds:
+            hint = nearest(str(name), kinds)
+            self.faults.append(Fault(f"{path}.kind", f"must be one of {', '.join(kinds)}, got {shown(name)}{hint}"))
         else:
-            return kinds[kind]
+            return kinds[name]
         return None
 
-    def _argument(
-        self, family: str, key: str, value: Any, annotation: str, path: str, given: dict[str, Any]
-    ) -> Any:
-        if key in TABLES:
-            return self._built(value, TABLES[key], path)
-        if (family, key) in TABLE_LISTS:
+    def _argument(self, key: Key, value: Any, path: str, **given: Any) -> Any:
+        """Turn the value of a key into an argument: a table or a list of tables into what they make, a file."""
+        if key.type in TABLES:
+            return self._built(value, TABLES[key.type], path)
+        if key.item in TABLES:
             if not isinstance(value, list) or not value:
                 self.faults.append(Fault(path, f"must be one or more tables [[{path}]]"))
                 return None
-            listed = TABLE_LISTS[family, key]
-            # Parts of a road cover what the road has to cover.
-            passed = given if listed == family else {}
-            return [self._built(table, listed, f"{path}[{n}]", **passed) for n, table in enumerate(value)]
-        if annotation == "Path":
+            return [self._built(table, TABLES[key.item], f"{path}[{n}]", **given) for n, table in enumerate(value)]
+        if key.is_file:
             if not isinstance(value, str) or "\0" in value:
                 self.faults.append(Fault(path, f"must be the name of a file, got {shown(value)}"))
                 return None

@@ -15,8 +15,9 @@ from movingfrf.response.moving_loads import moving_loads
 from movingfrf.response.simulation import simulate
 from movingfrf.roughness.road import Road
 from movingfrf.scenarios.forces import Loads
-from movingfrf.scenarios.stepped import EXCHANGED, Division, coupled, elements, endless, loaded
+from movingfrf.scenarios.stepped import EXCHANGED, Division, coupled, elements, loaded, require_endless
 from movingfrf.stepping.exchange import SOLVED
+from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -115,7 +116,7 @@ class Drive:
             )()
         else:
             result = simulate(
-                endless(self.guideway, instead="cdfm"),
+                require_endless(self.guideway, instead="cdfm"),
                 self.vehicle,
                 self.road.profile,
                 speed=journey.speed,
@@ -196,7 +197,7 @@ class Passage:
                 progress=progress,
             )()
         return moving_loads(
-            endless(self.guideway, instead=NEWMARK),
+            require_endless(self.guideway, instead=NEWMARK),
             self.forces,
             self.loads.positions,
             speed=self.journey.speed,
@@ -232,6 +233,11 @@ class Scenario:
     def guideway(self) -> Guideway:
         """The road or track."""
         return self.case.guideway
+
+    @property
+    def endless(self) -> Guideway | None:
+        """The same where it is endless and so has moving FRFs; None: it is a finite road."""
+        return None if isinstance(self.guideway, FiniteGuideway) else self.guideway
 
     @property
     def journey(self) -> Journey:

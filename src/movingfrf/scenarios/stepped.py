@@ -99,7 +99,7 @@ def elements(guideway: Guideway | FiniteGuideway) -> list[float]:
     return [_rounded(share * length) for share in DISCRETISATION.elements]
 
 
-def endless(guideway: Guideway | FiniteGuideway, *, instead: str) -> Guideway:
+def require_endless(guideway: Guideway | FiniteGuideway, *, instead: str) -> Guideway:
     """Give a guideway that has moving FRFs.
 
     Parameters

@@ -1,0 +1,258 @@
+"""What a table of a scenario can be: kinds, each of keys, made from what Python offers.
+
+The one source is the function or class that a kind is made from: its signature gives names, types and defaults, its
+docstring the words and units.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from operator import or_
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin
+
+# Default of a key that has none.
+NEEDED = inspect.Parameter.empty
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Key:
+    """One key of a table.
+
+    Parameters
+    ----------
+    name : str
+        Its name, that of a keyword argument.
+    type : type
+        The type of its value, without None. That of a family is a table of the family, `Sequence` of it a list of
+        such tables, `Path` the name of a file.
+    default : object
+        What it is where it is left out; NEEDED if it may not be.
+    words : str
+        What it says, with its unit in brackets.
+    """
+
+    name: str
+    type: Any
+    default: Any = NEEDED
+    words: str = ""
+
+    @property
+    def needed(self) -> bool:
+        """Whether it may not be left out."""
+        return self.default is NEEDED
+
+    @property
+    def unit(self) -> str:
+        """Its unit; empty if it has none."""
+        found = re.search(r"\[([^\]]+)\]", self.words)
+        return found[1] if found else ""
+
+    @property
+    def item(self) -> Any:
+        """The type of what it lists; None if it is no list."""
+        return get_args(self.type)[0] if get_origin(self.type) is Sequence else None
+
+    @property
+    def is_file(self) -> bool:
+        """Whether it names a file."""
+        return Path in (self.type, *get_args(self.type))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kind:
+    """One thing that a table can be.
+
+    Parameters
+    ----------
+    name : str
+        What the table's `kind` says: the Python name in snake_case.
+    make : callable
+        Makes it from the keys as keyword arguments, and checks them.
+    keys : tuple of Key
+        The keys that the table may have.
+    words : str
+        What it is, in a sentence.
+    """
+
+    name: str
+    make: Callable[..., Any]
+    keys: tuple[Key, ...]
+    words: str = ""
+
+    @classmethod
+    def of(cls, target: Callable[..., Any], *, name: str | None = None, without: Sequence[str] = ()) -> Kind:
+        """Make a kind of a function or a class.
+
+        Parameters
+        ----------
+        target : callable
+            What makes it; its arguments become the keys.
+        name : str, optional
+            Its name; None: that of the function or class.
+        without : sequence of str
+            Arguments that are no keys, since they have defaults or whoever calls `make` gives them.
+
+        Returns
+        -------
+        Kind
+            The kind.
+        """
+        return cls(
+            name=name or snake_case(target.__name__),
+            make=target,
+            keys=keys_of(target, without=without),
+            words=summary(target),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Family:
+    """All that a table can be: kinds that stand for each other.
+
+    Parameters
+    ----------
+    name : str
+        What the family is called.
+    makes : type
+        What its kinds make: an argument of this type is a table of this family.
+    kinds : dict of str to Kind
+        By name.
+    default : str, optional
+        The kind that a table has if it does not say; None: it has to.
+    """
+
+    name: str
+    makes: Any
+    kinds: Mapping[str, Kind]
+    default: str | None = None
+
+
+def family(name: str, makes: Any, *members: Kind | Callable[..., Any], default: str | None = None) -> Family:
+    """Gather kinds; functions and classes become kinds.
+
+    Parameters
+    ----------
+    name : str
+        What the family is called.
+    makes : type
+        What its kinds make.
+    *members : Kind or callable
+        The kinds.
+    default : str, optional
+        The kind that a table has if it does not say; an only kind need not be said.
+
+    Returns
+    -------
+    Family
+        The family.
+    """
+    kinds = [member if isinstance(member, Kind) else Kind.of(member) for member in members]
+    only = kinds[0].name if len(kinds) == 1 else None
+    return Family(name=name, makes=makes, kinds={kind.name: kind for kind in kinds}, default=default or only)
+
+
+def keys_of(target: Callable[..., Any], *, without: Sequence[str] = ()) -> tuple[Key, ...]:
+    """Make keys of the arguments of a function or a class.
+
+    Parameters
+    ----------
+    target : callable
+        With annotations, and documented the way NumPy documents.
+    without : sequence of str
+        Arguments that are no keys.
+
+    Returns
+    -------
+    tuple of Key
+        In the order of the arguments.
+
+    Examples
+    --------
+    >>> from movingfrf.guideways.foundations import Spring
+    >>> [(key.name, key.type.__name__, key.needed, key.unit) for key in keys_of(Spring)]
+    [('stiffness', 'float', True, 'N/m²'), ('damping', 'float', False, 'N s/m²')]
+    """
+    words = documented(target)
+    return tuple(
+        Key(
+            name=name,
+            type=_without_none(parameter.annotation),
+            default=parameter.default,
+            words=words.get(name, ""),
+        )
+        for name, parameter in inspect.signature(target, eval_str=True).parameters.items()
+        if name not in without
+    )
+
+
+def chosen(given: Mapping[str, Any], keys: Sequence[Key]) -> dict[str, Any]:
+    """Take the arguments that belong to some keys."""
+    return {key.name: given[key.name] for key in keys if key.name in given}
+
+
+def summary(target: Callable[..., Any]) -> str:
+    """First line of a docstring."""
+    return (inspect.getdoc(target) or "").split("\n", 1)[0]
+
+
+def documented(target: Callable[..., Any]) -> dict[str, str]:
+    """Words for each argument from the section Parameters of a docstring.
+
+    `a, b : float` counts for both; of as many units, `[N/m, N s/m]`, each has its own.
+
+    Parameters
+    ----------
+    target : callable
+        A function or a class, documented the way NumPy documents.
+
+    Returns
+    -------
+    dict of str to str
+        Name → words, in one line.
+
+    Examples
+    --------
+    >>> from movingfrf.vehicles.rail import bogie
+    >>> documented(bogie)["primary_damping"]
+    'Between one wheelset and the frame, both sides together [N s/m].'
+    """
+    _, _, section = (inspect.getdoc(target) or "").partition("\nParameters\n----------\n")
+    groups: list[tuple[list[str], list[str]]] = []
+    for line in section.partition("\n\n")[0].splitlines():
+        if line.startswith(" "):
+            groups[-1][1].append(line.strip())
+        else:
+            groups.append(([name.strip() for name in line.partition(" : ")[0].split(",")], []))
+    return {
+        name: _own_unit(" ".join(lines), place, len(names))
+        for names, lines in groups
+        for place, name in enumerate(names)
+    }
+
+
+def _own_unit(words: str, place: int, of: int) -> str:
+    """Leave of the units in brackets, one for each of several arguments, that of one of them."""
+
+    def own(found: re.Match[str]) -> str:
+        units = found[1].split(", ")
+        return f"[{units[place]}{found[2]}]" if len(units) == of else found[0]
+
+    return re.sub(r"\[([^\];]+)([^\]]*)\]", own, words)
+
+
+def snake_case(name: str) -> str:
+    """Write a Python name as kinds are written: `EulerBernoulliBeam` is `euler_bernoulli_beam`."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
+
+
+def _without_none(annotation: Any) -> Any:
+    """Take None out of a union: that a value may be left out, its default says."""
+    if get_origin(annotation) not in (Union, UnionType):
+        return annotation
+    return reduce(or_, [one for one in get_args(annotation) if one is not NoneType])
