@@ -80,7 +80,8 @@ def _settings(result: xr.Dataset) -> list[Setting]:
             )
         )
     if "start" in attrs:
-        found.append(Setting("Start", f"{plain(attrs['start'])} m", "of the vehicle's reference point, at t = 0"))
+        of = "the vehicle's reference point" if "contact_force" in result else "the frame that travels along"
+        found.append(Setting("Start", f"{plain(attrs['start'])} m", f"of {of}, at t = 0"))
     if "blend" in attrs:
         found.append(Setting("Blend", f"{plain(attrs['blend'])} m", "over which the profile sets in"))
     if "datum" in attrs:

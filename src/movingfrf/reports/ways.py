@@ -57,7 +57,7 @@ def is_stepped(result: xr.Dataset) -> bool:
 
 
 def stepped_road(result: xr.Dataset) -> str:
-    """Say what road a result was stepped on, and how its time was stepped.
+    """Say what road a result was stepped on.
 
     Parameters
     ----------
@@ -73,8 +73,7 @@ def stepped_road(result: xr.Dataset) -> str:
     travels = ", and travels along" if result.attrs["road_travels"] else ""
     return (
         f"The road is finite: it reaches from {plain(round(first, 6))} m to {plain(round(last, 6))} m{travels}. "
-        f"Its {result.attrs['road_dofs']} unknowns are stepped by {result.attrs['scheme']}, what is constant "
-        "factorised once."
+        f"Its {result.attrs['road_dofs']} unknowns are stepped in time, what is constant factorised once."
     )
 
 
@@ -95,7 +94,10 @@ def way_settings(result: xr.Dataset) -> list[Setting]:
     found = [Setting("Method", way(result).name)]
     if is_stepped(result):
         spacing = f"nodes {number(attrs['road_spacing'])} m apart" if attrs["road_spacing"] else ""
-        found.append(Setting("Unknowns of the road", str(attrs["road_dofs"]), spacing))
+        found += [
+            Setting("Unknowns of the road", str(attrs["road_dofs"]), spacing),
+            Setting("Scheme", attrs["scheme"], wide=True),
+        ]
     if "run_in" in attrs:
         found.append(Setting("Run-in", f"{plain(attrs['run_in'])} s", "on the smooth road, before the record"))
     if attrs.get("method") == "sim":
