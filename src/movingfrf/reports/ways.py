@@ -31,6 +31,7 @@ WAYS = {
         "step by step in the time domain, side by side, contact forces exchanged within each step until both agree "
         "(the separate iterative method, SIM)",
     ),
+    "duhamel": Way("Duhamel's integral", "step by step in the time domain, by Duhamel's integral"),
     "newmark": Way("Newmark's method", "step by step in the time domain, by Newmark's method"),
 }
 

@@ -306,7 +306,7 @@ def stretch(
     first, last = places.min() - around, places.max() + around
     if not division.travels:
         first += journey.start - run_in * journey.speed
-        last += journey.start + journey.speed * journey.time_step * journey.samples
+        last += journey.start + journey.distance
     # Nodes at multiples of the element, wherever the track ends: its length must not change the mesh.
     return finite_track(
         track,

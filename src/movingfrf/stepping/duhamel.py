@@ -100,16 +100,56 @@ def duhamel(
         If contact would be lost.
     """
     journey = Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend)
+    return convolved(road, vehicle, profile, journey, compiled=compiled, progress=progress)
+
+
+def convolved(
+    road: SampledGuideway,
+    vehicle: Vehicle,
+    profile: Profile,
+    journey: Journey,
+    *,
+    compiled: bool | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Drive a vehicle over a road that is known by its moving impulse response: `duhamel`, for a journey.
+
+    Parameters
+    ----------
+    road : SampledGuideway
+        Moving impulse response between all contacts.
+    vehicle : Vehicle
+        The vehicle.
+    profile : Profile
+        Elevation of the road.
+    journey : Journey
+        How the vehicle travels.
+    compiled : bool, optional
+        As for `duhamel`.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `duhamel` returns it.
+
+    Raises
+    ------
+    ValueError
+        As for `duhamel`.
+    """
+    time_step = journey.time_step
     with checking() as check:
         require_kinds(check, road=(road, SampledGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile))
-    road.require_speed(speed)
+    road.require_speed(journey.speed)
     positions = vehicle.positions
     columns = road.columns(**vehicle.offsets)
     whole, _, earlier = weights(road, time_step)
     channels = 5 * positions.size + 2 * len(vehicle.dof_names)
     require_memory(8.0 * channels * journey.samples, f"{journey.samples} steps of {time_step:g} s")
     seen = seen_in_time(profile, vehicle, journey)
-    yields = road.moving_frf(speed=speed, omega=[0.0], **vehicle.offsets)[0].real
+    yields = road.moving_frf(speed=journey.speed, omega=[0.0], **vehicle.offsets)[0].real
     tie = tie_of(vehicle)
     held = stiffness_at_rest(tie)
     load = np.linalg.solve(np.eye(positions.size) + held @ yields, vehicle.static_loads)
@@ -160,6 +200,7 @@ def duhamel(
     settings = attributes(
         "coupled",
         "Coupled response of a vehicle and a guideway: Duhamel's integral",
+        method="duhamel",
         **journey.settings,
         datum=seen.datum,
         critical_speed=road.critical_speed,
@@ -243,6 +284,7 @@ def duhamel_loads(
     settings = attributes(
         "loaded",
         "Response of a guideway to prescribed moving loads: Duhamel's integral",
+        method="duhamel",
         speed=speed,
         time_step=time_step,
         critical_speed=road.critical_speed,

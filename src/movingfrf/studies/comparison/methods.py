@@ -16,7 +16,7 @@ from movingfrf.guideways.foundations import OnMass
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import Track
 from movingfrf.response.moving_loads import moving_loads
-from movingfrf.response.simulation import simulate
+from movingfrf.response.simulation import driven
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.scenario import Drive, Passage, Scenario, drive_of, passage_of
 from movingfrf.scenarios.stepped import (
@@ -30,7 +30,7 @@ from movingfrf.scenarios.stepped import (
     run_in_of,
     stretch,
 )
-from movingfrf.stepping.duhamel import duhamel, duhamel_loads
+from movingfrf.stepping.duhamel import convolved, duhamel_loads
 from movingfrf.stepping.exchange import SOLVED, Iteration, numba_is_there
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.impulse import CANCELLING, struck_track
@@ -82,11 +82,11 @@ class Case:
         """Every distance from a contact or load to a contact or observer [m]."""
         return np.unique(np.round(self.scenario.case.receivers[:, None] - self.scenario.case.sources, 9))
 
-    def driven(self) -> tuple[tuple[Vehicle, Profile], dict[str, Any]]:
-        """Give vehicle and profile, and the journey as keywords, as every coupled method takes them."""
-        drive, journey = drive_of(self.scenario), self.journey
-        how = {name: getattr(journey, name) for name in ("speed", "duration", "start", "time_step", "blend")}
-        return (drive.vehicle, drive.road.profile), how
+    @property
+    def parts(self) -> tuple[Vehicle, Profile]:
+        """Give vehicle and profile, as every coupled method takes them."""
+        drive = drive_of(self.scenario)
+        return drive.vehicle, drive.road.profile
 
     def loaded(self) -> tuple[tuple[FloatArray, FloatArray], dict[str, Any]]:
         """Give forces and positions, and the rest as keywords, as every method for prescribed loads takes them."""
@@ -111,12 +111,10 @@ class Case:
 
 def _transformed(case: Case, guideway: Guideway) -> Solve:
     """Solve in the frequency domain, on any guideway."""
-    truncation = case.journey.truncation
     if isinstance(case.scenario.case, Passage):
         given, how = case.loaded()
-        return lambda: moving_loads(guideway, *given, truncation=truncation, **how)
-    parts, travel = case.driven()
-    return lambda: simulate(guideway, *parts, truncation=truncation, **travel)
+        return lambda: moving_loads(guideway, *given, truncation=case.journey.truncation, **how)
+    return lambda: driven(guideway, *case.parts, case.journey)
 
 
 def _moving_frf(case: Case) -> Solve:
@@ -144,8 +142,7 @@ def _duhamel(case: Case) -> Solve:
     if isinstance(case.scenario.case, Passage):
         given, how = case.loaded()
         return lambda: duhamel_loads(struck, *given, **how)
-    parts, travel = case.driven()
-    return lambda: duhamel(struck, *parts, **travel)
+    return lambda: convolved(struck, *case.parts, case.journey)
 
 
 def stepped(
@@ -158,7 +155,7 @@ def stepped(
 ) -> Solve:
     """Step vehicle and road; where the road is the same everywhere the weight has a run of its own."""
     return coupled(
-        (case.scenario.guideway, *case.driven()[0]),
+        (case.scenario.guideway, *case.parts),
         case.journey,
         case.division(travels=travels),
         superposed=superposed,
