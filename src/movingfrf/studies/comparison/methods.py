@@ -31,9 +31,10 @@ from movingfrf.scenarios.stepped import (
     stretch,
 )
 from movingfrf.stepping.duhamel import convolved, duhamel_loads
-from movingfrf.stepping.exchange import SOLVED, Iteration, numba_is_there
+from movingfrf.stepping.exchange import SOLVED, Iteration
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.impulse import CANCELLING, struck_track
+from movingfrf.stepping.marching import numba_is_there
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
 

@@ -14,8 +14,8 @@ from movingfrf.reports.figures import SIZE, Illustration, blank, drawing, illust
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Column, Row, Setting, Table
 from movingfrf.scenarios.scenario import Drive
-from movingfrf.stepping.exchange import numba_is_there
 from movingfrf.stepping.finite_guideway import FiniteGuideway
+from movingfrf.stepping.marching import numba_is_there
 from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
 from movingfrf.studies.comparison.convergence import TARGETS, refined
 from movingfrf.studies.comparison.methods import FOR_LOADS, FOR_VEHICLE, compiles
