@@ -13,9 +13,10 @@ from movingfrf._basics.welch import FLAT
 from movingfrf._basics.wording import evenly_spread, named_paths
 from movingfrf.metrics.iri import PROCEDURE, iri
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
-from movingfrf.roughness.preparation import resampled, selected
 from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES
+from movingfrf.roughness.steps.resampled import resampled
+from movingfrf.roughness.steps.selected import selected
 
 # Resolutions of instruments and file formats that are looked for [m].
 RESOLUTIONS = (1e-2, 1e-3, 5e-4, 2.5e-4, 1e-4, 1e-5, 1e-6)

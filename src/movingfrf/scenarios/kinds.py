@@ -18,11 +18,11 @@ from movingfrf.guideways.foundations import OnMass, ShearLayer, Spring
 from movingfrf.guideways.rigid import RigidGuideway
 from movingfrf.guideways.track import track
 from movingfrf.roughness.files import read_profile
-from movingfrf.roughness.preparation import prepared
+from movingfrf.roughness.preparation import Preparation, read_prepared
 from movingfrf.roughness.road import Road
 from movingfrf.roughness.spectra.coherence import ExponentialCoherence, IsotropicCoherence
 from movingfrf.scenarios import forces
-from movingfrf.scenarios.roads import ROADS, SPECTRA
+from movingfrf.scenarios.roads import ROADS, SPECTRA, _parameters, _with_signature
 from movingfrf.vehicles.assembly import Body, Hinge, Suspension, assemble
 from movingfrf.vehicles.cars import full_car, half_car, quarter_car
 from movingfrf.vehicles.catalogue import catalogue
@@ -43,42 +43,16 @@ class Loads(NamedTuple):
     observe: np.ndarray
 
 
-def profile(
-    *,
-    interval: tuple[float, float],
-    file: Path,
-    format: str | None = None,
-    columns: Sequence[str | int] | None = None,
-    across: Sequence[float] | None = None,
-    crop_rims: bool = False,
-    repair_gaps: float | None = None,
-    paths: Sequence[int] | None = None,
-    first: float | None = None,
-    last: float | None = None,
-    spike: float | None = None,
-    detrend: int | None = None,
-    high_pass: float | None = None,
-    step: float | None = None,
-    repeat_to: float | None = None,
-    mirror_to: float | None = None,
-) -> Road:
+def profile(*, interval: tuple[float, float], file: Path, **keys: Any) -> Road:
     """Read a measured profile, and prepare it as far as options ask for it; the description says what was done."""
-    found, understood = read_profile(
-        file, format=format, columns=columns, across=across, crop_rims=crop_rims, repair_gaps=repair_gaps
-    )
-    ready = prepared(
-        found,
-        paths=paths,
-        first=first,
-        last=last,
-        spike=spike,
-        detrend=detrend,
-        high_pass=high_pass,
-        step=step,
-        repeat_to=repeat_to,
-        mirror_to=mirror_to,
-    )
+    ready, understood = read_prepared(file, **keys)
     return Road(ready, "; ".join([understood, *ready.steps]))
+
+
+# Its keys are those of reading and of every step of a preparation.
+_with_signature(
+    profile, [*_parameters(profile, "keys"), *_parameters(read_profile, "file"), *_parameters(Preparation)]
+)
 
 
 def passage(*, speed: float, duration: float, time_step: float = 1e-3, truncation: float | None = None) -> Journey:
