@@ -154,6 +154,7 @@ FAULTS = [
     Fault("first path of an ERD file twice", "roughness/formats/erd.py", "values[:, n]", "values[:, 0]"),
     Fault("sphere for the ellipsoid", "roughness/formats/gpx.py", "6.694_379_990_141e-3", "0.0"),
     Fault("paths between sections", "roughness/files.py", "rights + share * (lefts - rights)", "rights"),
+    Fault("formats not told", "roughness/files.py", ".replace(words, instead)", '.replace(words, "")'),
     Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
     Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
     Fault(

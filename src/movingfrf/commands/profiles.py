@@ -15,7 +15,7 @@ from cyclopts import Parameter
 from movingfrf._basics.checks import ParameterError
 from movingfrf._basics.documented import documented
 from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
-from movingfrf.roughness.files import ReadProfile, read_profile
+from movingfrf.roughness.files import ReadProfile, naming_formats, read_profile
 from movingfrf.roughness.formats.base import ColumnKey
 from movingfrf.roughness.preparation import Preparation, read_prepared
 
@@ -107,6 +107,7 @@ def _as_typed(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
+@naming_formats
 def profile(
     file: Path,
     /,
@@ -121,7 +122,7 @@ def profile(
     Parameters
     ----------
     file
-        The profile: OpenCRG, ERD, CSV or other text in columns, MATLAB, netCDF, GPX.
+        The profile: {titles}.
     output
         The folder to write into.
     options
@@ -158,6 +159,7 @@ def profile(
         console.print(f"wrote {place}", soft_wrap=True)
 
 
+@naming_formats
 def convert(
     file: Path,
     target: Path,
@@ -167,16 +169,16 @@ def convert(
     force: bool = False,
     options: ProfileOptions = AS_THE_FILE_HAS_IT,  # type: ignore[valid-type]
 ) -> None:
-    """Convert a profile from one format to another: CSV, ERD, MATLAB, netCDF, OpenCRG; GPX is only read.
+    """Convert a profile from one format to another: {written titles}; only read: {only read}.
 
     Parameters
     ----------
     file
         The profile.
     target
-        The file to write; its ending tells the format: .csv, .erd, .mat, .nc, .crg.
+        The file to write; its ending tells the format: {written endings} …
     encoding
-        How numbers are stored: of .crg double, float, long text, short text; of .erd text, float, double.
+        How numbers are stored, the first by default: {encodings}.
     force
         Replace the target if it exists.
     options
