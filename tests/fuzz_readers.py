@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from movingfrf.roughness.files import read_profile, write_profile
+from movingfrf.roughness.files import FORMATS, read_profile, write_profile
 from movingfrf.roughness.profile import Profile
 
 TIMES, FLOOR, PATIENCE = 10, 2**27, 30.0
@@ -50,19 +50,10 @@ def profile(count: int = 60) -> Profile:
 def samples(folder: Path) -> dict[str, Path]:
     """Write one file of each format and encoding."""
     road = profile()
-    wanted = {
-        "commas.csv": {},
-        "text.erd": {},
-        "binary.erd": {"encoding": "float"},
-        "version5.mat": {},
-        "road.nc": {},
-        "double.crg": {},
-        "float.crg": {"encoding": "float"},
-        "long.crg": {"encoding": "long text"},
-        "short.crg": {"encoding": "short text"},
-    }
-    for name, options in wanted.items():
-        write_profile(road, folder / name, **options)
+    for form in FORMATS.values():
+        for encoding in form.encodings if form.write else ():
+            name = f"{encoding or 'road'}{form.endings[0]}".replace(" ", "_")
+            write_profile(road, folder / name, encoding=encoding or None)
     table = zip(road.stations.tolist(), road.columns.tolist(), strict=True)
     european = "Station [m];Left [mm];Right [mm]\n" + "".join(f"{x};{a};{b}\n" for x, (a, b) in table)
     (folder / "european.csv").write_text(european.replace(".", ","))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy.signal
 from matplotlib.figure import Figure
 
 import movingfrf as mf
@@ -76,6 +77,15 @@ def test_force_spectrum_integrates_to_the_variance(result):
     # Windowing a record of four seconds costs some accuracy.
     variance = density.sum() * (frequency[1] - frequency[0])
     assert variance == pytest.approx(result.contact_force.values.var(), rel=0.25)
+
+
+@pytest.mark.parametrize("count", [100, 1001, 40_000])
+def test_spectral_density_is_that_of_another_program(count):
+    values = np.random.default_rng(2).normal(size=count) + 100.0
+    frequency, density = spectral_density(values, 1e-3)
+    expected = scipy.signal.welch(values, 1e3, nperseg=min(max(2 * count // 9, 32), 10_000), detrend="constant")
+    assert frequency == pytest.approx(expected[0][1:])
+    assert density == pytest.approx(expected[1][1:], rel=1e-9)
 
 
 def test_spectral_density_of_white_noise_is_flat_at_its_known_level():

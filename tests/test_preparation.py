@@ -1,9 +1,14 @@
 """Steps between a measured profile and one to drive on: what each does, and that each says so."""
 
+import inspect
+
 import numpy as np
 import pytest
 
 import movingfrf as mf
+from movingfrf._basics.documented import documented
+from movingfrf.commands.main import main
+from movingfrf.roughness.preparation import STEPS
 
 STEP = 0.1
 X = 50.0 + STEP * np.arange(6001)
@@ -200,6 +205,24 @@ def test_steps_are_told_in_order_and_faults_bear_the_name_of_the_option():
         mf.prepared(waves(7.0), repeat_to=1.0)
     with pytest.raises(ValueError, match="detrend must be at most 5, got 6"):
         mf.prepared(waves(7.0), detrend=6)
+
+
+def test_scenario_command_and_python_ask_for_steps_by_the_same_keys(tmp_path, capsys):
+    keys = [key for step in STEPS for key in step.keys]
+    assert list(inspect.signature(mf.prepared).parameters) == ["profile", *keys]
+    file = tmp_path / "road.toml"
+    file.write_text('[roughness]\nkind = "profile"\nfile = "road.csv"\nnonsense = 1\n')
+    with pytest.raises(mf.ScenarioError, match="nonsense is not known here") as refused:
+        mf.read_scenario(file)
+    (said,) = [line for line in str(refused.value).splitlines() if "nonsense" in line]
+    allowed = set(said.partition("allowed are ")[2].split(", "))
+    assert allowed == {*keys, "kind", "file", "format", "columns", "across", "crop_rims", "repair_gaps"}
+    assert main(["profile", "--help"]) == 0
+    shown = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    for key in allowed - {"kind", "file"}:
+        words = {**documented(mf.read_profile), **documented(mf.prepared)}[key].words
+        assert f"--{key.replace('_', '-')} " in shown
+        assert words.split("`")[0] in shown
 
 
 def test_a_road_too_long_for_memory_is_refused_before_it_is_made():

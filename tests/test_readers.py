@@ -9,6 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import movingfrf as mf
+from movingfrf.commands.main import main
+from movingfrf.roughness.files import FORMATS
 from tests.reader_parts import DATA, needs, written
 
 STATIONS, HEIGHTS = np.array([0.0, 0.5, 1.25, 2.0, 3.0]), np.array([583.1, 583.2, 583.15, 583.0, 583.05])
@@ -196,6 +198,25 @@ def test_round_trips_are_exact_to_the_precision_of_the_format(tmp_path, name, en
         assert back.across == pytest.approx((0.75, -0.75))
     if name.endswith("nc"):
         assert back.steps == ("made up",)
+
+
+def test_every_format_is_tried_and_told_of(capsys):
+    written = [form for form in FORMATS.values() if form.write]
+    assert {(f"road{form.endings[0]}", encoding or None) for form in written for encoding in form.encodings} == {
+        *PRECISION
+    }
+    for command in ("profile", "convert"):
+        assert main([command, "--help"]) == 0
+        said = " ".join(capsys.readouterr().out.replace("│", " ").split())
+        assert "{" not in said
+        for form in FORMATS.values():
+            assert form.title in said
+            assert form.name in said
+            assert command == "profile" or not form.write or form.endings[0] in said
+            assert command == "profile" or not any(form.encodings) or f"of {form.name} {form.encodings[0]}" in said
+    for form in FORMATS.values():
+        assert form.title in mf.read_profile.__doc__
+        assert (form.name in mf.write_profile.__doc__) == (form.write is not None)
 
 
 @pytest.mark.parametrize("name", ["road.csv", "road.nc", "road.mat", "road.erd", "road.crg"])

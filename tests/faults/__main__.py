@@ -47,6 +47,7 @@ ABOUT_PROFILES = (
     "roughness/fi",
     "roughness/formats",
     "roughness/preparation",
+    "roughness/steps",
     "roughness/profile",
     "metrics/profile",
     "reports/profile",

@@ -105,7 +105,11 @@ FAULTS = [
         "np.reshape(values, (-1, 1))",
     ),
     # Profiles from files.
-    Fault("trend left in the spectrum", "metrics/profile.py", "piece -= np.outer", "_ = np.outer"),
+    Fault(
+        "mean left in the spectrum", "_basics/welch.py", " - columns[start : start + length].mean(axis=0)", " + 0"
+    ),
+    Fault("last line counted twice", "_basics/welch.py", "if length % 2 == 0:", "if False:"),
+    Fault("trend left in the spectrum", "_basics/welch.py", "piece -= np.outer", "_ = np.outer"),
     Fault("coherence of amplitudes", "metrics/profile.py", "(real**2 + imaginary**2)", "np.hypot(real, imaginary)"),
     Fault("edges counted with spikes", "metrics/profile.py", "np.flatnonzero(peak & (bend", "np.flatnonzero((bend"),
     Fault(

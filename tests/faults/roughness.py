@@ -173,18 +173,25 @@ FAULTS = [
     Fault("first path of an ERD file twice", "roughness/formats/erd.py", "values[:, n]", "values[:, 0]"),
     Fault("sphere for the ellipsoid", "roughness/formats/gpx.py", "6.694_379_990_141e-3", "0.0"),
     Fault("paths between sections", "roughness/files.py", "rights + share * (lefts - rights)", "rights"),
+    Fault("formats not told", "roughness/files.py", ".replace(words, instead)", '.replace(words, "")'),
     Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
     Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
-    Fault("high pass of first order", "roughness/preparation.py", "butter(FILTER.gentle, 1 /", "butter(1, 1 /"),
+    Fault(
+        "high pass of first order", "roughness/steps/high_passed.py", "butter(FILTER.gentle, 1 /", "butter(1, 1 /"
+    ),
     Fault(
         "resampled with aliases",
-        "roughness/preparation.py",
+        "roughness/steps/resampled.py",
         "if step > old * (1 + 1e-6):",
         "if step > old * (1 + 1e6):",
     ),
-    Fault("spikes left in", "roughness/preparation.py", "column[out] = np.interp", "_ = np.interp"),
-    Fault("mirror doubles its end", "roughness/preparation.py", "% (2 * last) - last", "% (2 * last + 1) - last"),
-    Fault("steps forgotten", "roughness/preparation.py", "steps=(*profile.steps, sentence)", "steps=(sentence,)"),
+    Fault("spikes left in", "roughness/steps/repaired.py", "column[out] = np.interp", "_ = np.interp"),
+    Fault(
+        "mirror doubles its end", "roughness/steps/mirrored.py", "% (2 * last) - last", "% (2 * last + 1) - last"
+    ),
+    Fault("fault by the name in Python", "roughness/preparation.py", "key_of.get(fault.name, ", "("),
+    Fault("steps exclude nothing", "roughness/preparation.py", "if step.without in asked and", "if"),
+    Fault("steps forgotten", "roughness/steps/base.py", "steps=(*profile.steps, sentence)", "steps=(sentence,)"),
     Fault(
         "fitted beyond the content",
         "roughness/fitting.py",

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,8 +19,6 @@ class Estimate:
 
     segments: int = 8  # half-overlapping segments of a record, at the least [a convention]
     longest_segment: float = 10.0  # of a record over time [s]: resolves 0.1 Hz [a convention]
-    # Of an elevation over distance [m]: at 0.01 cycle/m it resolves the longest waves of ISO 8608 twice over.
-    longest_stretch: float = 250.0  # [a convention]
     fewest_samples: int = 32  # of a record, and of a segment [a convention]
     # Below this share of its size a variation is rounding: of a sum of thousands of terms 1e-13 of it, and forces
     # that vary by a millionth of a static load are results.
@@ -63,8 +61,9 @@ def spectral_density(values: FloatArray, time_step: float) -> tuple[FloatArray, 
     if len(values) < fewest or np.ptp(values) <= ESTIMATE.rounding * np.abs(values).max():
         return np.empty(0), np.empty(0)
     longest = max(int(ESTIMATE.longest_segment / time_step), fewest)
-    length = min(max(_length(values, ESTIMATE.segments), fewest), longest)
-    return _estimated(values, time_step, length, detrend="constant", left_out=1)
+    length = min(max(_length(len(values), ESTIMATE.segments), fewest), longest)
+    frequency, density, _ = _estimated(values[:, None], time_step, length, trend=False, left_out=1)
+    return frequency, density[:, 0]
 
 
 def welch(
@@ -88,19 +87,67 @@ def welch(
     density : ndarray
         Spectral density [m³].
     """
-    return _estimated(elevation, step, max(_length(elevation, segments), 8), detrend="linear", left_out=3)
+    spatial_frequency, density, _ = cross_spectra(elevation[:, None], step, segments=segments)
+    return spatial_frequency, density[:, 0]
 
 
-def _length(values: FloatArray, segments: int) -> int:
+class Spectra(NamedTuple):
+    """One-sided spectra of columns, and between the first and the last."""
+
+    frequency: FloatArray  # (line,) [cycle/m], or [Hz] of a record over time
+    own: FloatArray  # (line, column) [m³]
+    both: ComplexArray  # (line,) [m³]
+
+
+def cross_spectra(columns: FloatArray, step: float, *, segments: int) -> Spectra:
+    """Estimate the one-sided spectra of the paths of a profile as `welch` does, and that between the outermost.
+
+    Parameters
+    ----------
+    columns : ndarray, shape (distance, path)
+        Elevation [m].
+    step : float
+        Distance between samples [m].
+    segments : int
+        Number of half-overlapping segments, each freed of its linear trend.
+
+    Returns
+    -------
+    Spectra
+        Without the lowest three lines.
+    """
+    return _estimated(columns, step, max(_length(len(columns), segments), 8), trend=True, left_out=3)
+
+
+def _length(samples: int, segments: int) -> int:
     """Tell the samples in each of so many half-overlapping segments."""
-    return 2 * len(values) // (segments + 1)
+    return 2 * samples // (segments + 1)
 
 
-def _estimated(
-    values: FloatArray, step: float, length: int, *, detrend: Literal["constant", "linear"], left_out: int
-) -> tuple[FloatArray, FloatArray]:
-    """Estimate a spectrum from segments of a length, each freed of mean or trend; the lowest lines are left out."""
-    from scipy.signal import welch as scipy_welch
+def _estimated(columns: FloatArray, step: float, length: int, *, trend: bool, left_out: int) -> Spectra:
+    """Estimate spectra from segments of a length, each freed of its mean and, if asked, its trend.
 
-    frequency, density = scipy_welch(values, 1 / step, nperseg=min(length, len(values)), detrend=detrend)
-    return frequency[left_out:], density[left_out:]
+    The lowest lines are left out. All columns in one pass, a segment at a time: a profile of 500 km is long, and
+    copies of it are not needed.
+    """
+    from scipy.fft import rfft
+
+    samples = len(columns)
+    length = min(length, samples)
+    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(length) / length)
+    ramp = np.arange(length) - (length - 1) / 2
+    starts = np.arange(0, samples - length + 1, length - length // 2)
+    own: FloatArray = np.zeros((length // 2 + 1, columns.shape[1]))
+    both: ComplexArray = np.zeros(length // 2 + 1, complex)
+    for start in starts:
+        piece = columns[start : start + length] - columns[start : start + length].mean(axis=0)
+        if trend:
+            piece -= np.outer(ramp, ramp @ piece / (ramp @ ramp))
+        lines = rfft(piece * window[:, None], axis=0)
+        own += lines.real**2 + lines.imag**2
+        both += lines[:, 0].conj() * lines[:, -1]
+    scale = 2 * step / (window @ window) / len(starts)
+    if length % 2 == 0:  # the last line has no partner at a negative frequency
+        own[-1], both[-1] = own[-1] / 2, both[-1] / 2
+    frequency = np.arange(length // 2 + 1) / (length * step)
+    return Spectra(frequency[left_out:], scale * own[left_out:], scale * both[left_out:])

@@ -2,126 +2,118 @@
 
 from __future__ import annotations
 
+import inspect
 import json
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import field, make_dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import Annotated, Any, NamedTuple
 
 from cyclopts import Parameter
 
 from movingfrf._basics.checks import ParameterError
+from movingfrf._basics.documented import documented
 from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from movingfrf.roughness.files import ReadProfile
+from movingfrf.roughness.files import ReadProfile, naming_formats, read_profile
+from movingfrf.roughness.formats.base import ColumnKey
+from movingfrf.roughness.preparation import Preparation, read_prepared
 
 
-Number = TypeVar("Number", int, float)
+class Typed(NamedTuple):
+    """How a value is typed on a command line."""
+
+    kind: Any
+    value: Callable[[str, Any], Any]  # option and what was typed → value
 
 
-@Parameter(name="*")
-@dataclass(frozen=True, kw_only=True)
-class ProfileOptions:
-    """How a profile is read and what is done to it, in this order; nothing is done that is not asked for.
-
-    Parameters
-    ----------
-    format
-        Format of the file: crg, erd, mat, netcdf, gpx or csv; found from its content by default.
-    columns
-        Columns to take, names or numbers from 0 with commas between them: the station, then elevations.
-    across
-        Lateral positions of the paths to take from a grid [m], left positive, with commas: 0.75,-0.75.
-    crop_rims
-        Leave out what a grid has no elevation for at its rims.
-    repair_gaps
-        Fill missing elevations by straight lines, in gaps of at most this length [m].
-    paths
-        Numbers of the paths to take, from 0, with commas between them.
-    first
-        Take stations from this distance on [m].
-    last
-        Take stations up to this distance [m].
-    spike
-        Replace elevations further than this from the median of 1 m around them [m].
-    detrend
-        Take out a polynomial of this degree, a whole number: 0 the mean, 1 a straight line.
-    high_pass
-        Take out waves longer than this [m].
-    step
-        Resample to this step [m].
-    repeat_to
-        Repeat the profile up to this length [m].
-    mirror_to
-        Drive the profile forth and back up to this length [m].
-    """
-
-    format: str | None = None
-    columns: str | None = None
-    across: str | None = None
-    crop_rims: bool = False
-    repair_gaps: float | None = None
-    paths: str | None = None
-    first: float | None = None
-    last: float | None = None
-    spike: float | None = None
-    # A float, since a command line's 1.5 would be rounded on the way to an int.
-    detrend: float | None = None
-    high_pass: float | None = None
-    step: float | None = None
-    repeat_to: float | None = None
-    mirror_to: float | None = None
-
-    def profile(self, file: Path) -> ReadProfile:
-        """Read a file and do what was asked for; a refused option is named as it was typed."""
-        try:
-            return self._profile(file)
-        except ParameterError as error:
-            raise ParameterError(
-                [fault._replace(name=f"--{fault.name.replace('_', '-')}") for fault in error.faults]
-            ) from None
-
-    def _profile(self, file: Path) -> ReadProfile:
-        from movingfrf.roughness.files import ReadProfile, read_profile
-        from movingfrf.roughness.preparation import prepared
-
-        if self.detrend is not None and not self.detrend.is_integer():
-            raise ValueError(f"--detrend must be a whole number, got {self.detrend:g}")
-        columns = [int(word) if word.isdecimal() else word for word in _words(self.columns)]
-        found, understood = read_profile(
-            file,
-            format=self.format,
-            columns=columns or None,
-            across=_numbers(self.across, "--across", float) or None,
-            crop_rims=self.crop_rims,
-            repair_gaps=self.repair_gaps,
-        )
-        ready = prepared(
-            found,
-            paths=_numbers(self.paths, "--paths", int) or None,
-            first=self.first,
-            last=self.last,
-            spike=self.spike,
-            detrend=None if self.detrend is None else int(self.detrend),
-            high_pass=self.high_pass,
-            step=self.step,
-            repeat_to=self.repeat_to,
-            mirror_to=self.mirror_to,
-        )
-        return ReadProfile(ready, understood)
+def _words(option: str, typed: str) -> list[str]:
+    """Split a list with commas."""
+    return [word.strip() for word in typed.split(",") if word.strip()]
 
 
+def _columns(option: str, typed: str) -> list[str | int] | None:
+    """Read names and numbers of columns."""
+    return [int(word) if word.isdecimal() else word for word in _words(option, typed)] or None
+
+
+def _numbers(kind: type, option: str, typed: str) -> list[int | float] | None:
+    """Read the numbers in a list with commas."""
+    try:
+        return [kind(word) for word in _words(option, typed)] or None
+    except ValueError:
+        raise ValueError(f"{option} must be numbers with commas between them, got {typed!r}") from None
+
+
+def _whole(option: str, typed: float) -> int:
+    """Take a whole number for one."""
+    if not typed.is_integer():
+        raise ValueError(f"{option} must be a whole number, got {typed:g}")
+    return int(typed)
+
+
+# Types that are typed as another: a list as text with commas, and a whole number as a float, since a command line's
+# 1.5 would be rounded on the way to an int.
+TYPED: dict[Any, Typed] = {
+    Sequence[ColumnKey] | None: Typed(str | None, _columns),
+    Sequence[float] | None: Typed(str | None, partial(_numbers, float)),
+    Sequence[int] | None: Typed(str | None, partial(_numbers, int)),
+    int | None: Typed(float | None, _whole),
+}
+
+# How a profile is read and what is done to it, in this order: the keys of both, with the words of their docstrings.
+OPTIONS = {
+    name: parameter
+    for source in (read_profile, Preparation)
+    for name, parameter in inspect.signature(source, eval_str=True).parameters.items()
+    if name != "file"
+}
+
+
+def _field(name: str, option: inspect.Parameter) -> tuple[str, Any, Any]:
+    """Name, type with its words, and default of an option."""
+    kind = TYPED[option.annotation].kind if option.annotation in TYPED else option.annotation
+    said = {**documented(read_profile), **documented(Preparation)}[name].words
+    commas = " With commas between them." if kind != option.annotation and kind == str | None else ""
+    return name, Annotated[kind, Parameter(help=said + commas)], field(default=option.default)
+
+
+ProfileOptions = Parameter(name="*")(
+    make_dataclass(
+        "ProfileOptions",
+        [_field(*option) for option in OPTIONS.items()],
+        namespace={"__module__": __name__},
+        frozen=True,
+        kw_only=True,
+    )
+)
 AS_THE_FILE_HAS_IT = ProfileOptions()
 
 
+def read_as_asked(file: Path, options: ProfileOptions) -> ReadProfile:  # type: ignore[valid-type]
+    """Read a file and do what was asked for; a refused option is named as it was typed."""
+    asked = {}
+    for name, value in vars(options).items():
+        typed = TYPED.get(OPTIONS[name].annotation)
+        asked[name] = value if typed is None or value is None else typed.value(_as_typed(name), value)
+    try:
+        return read_prepared(file, **asked)
+    except ParameterError as error:
+        raise ParameterError([fault._replace(name=_as_typed(fault.name)) for fault in error.faults]) from None
+
+
+def _as_typed(name: str) -> str:
+    """Name an option as it is typed."""
+    return f"--{name.replace('_', '-')}"
+
+
+@naming_formats
 def profile(
     file: Path,
     /,
     *,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
-    options: ProfileOptions = AS_THE_FILE_HAS_IT,
+    options: ProfileOptions = AS_THE_FILE_HAS_IT,  # type: ignore[valid-type]
 ) -> None:
     """Describe a measured profile: length, step, spectrum and ISO 8608 class, IRI, coherence, and what looks odd.
 
@@ -130,7 +122,7 @@ def profile(
     Parameters
     ----------
     file
-        The profile: OpenCRG, ERD, CSV or other text in columns, MATLAB, netCDF, GPX.
+        The profile: {titles}.
     output
         The folder to write into.
     options
@@ -144,7 +136,7 @@ def profile(
         from movingfrf.reports.profile import render, tables
         from movingfrf.results.files import replacing
 
-        read, understood = options.profile(file)
+        read, understood = read_as_asked(file, options)
         found = describe_profile(read, progress=stages.report)
         written = []
         if output is not None:
@@ -167,6 +159,7 @@ def profile(
         console.print(f"wrote {place}", soft_wrap=True)
 
 
+@naming_formats
 def convert(
     file: Path,
     target: Path,
@@ -174,18 +167,18 @@ def convert(
     *,
     encoding: str | None = None,
     force: bool = False,
-    options: ProfileOptions = AS_THE_FILE_HAS_IT,
+    options: ProfileOptions = AS_THE_FILE_HAS_IT,  # type: ignore[valid-type]
 ) -> None:
-    """Convert a profile from one format to another: CSV, ERD, MATLAB, netCDF, OpenCRG; GPX is only read.
+    """Convert a profile from one format to another: {written titles}; only read: {only read}.
 
     Parameters
     ----------
     file
         The profile.
     target
-        The file to write; its ending tells the format: .csv, .erd, .mat, .nc, .crg.
+        The file to write; its ending tells the format: {written endings} …
     encoding
-        How numbers are stored: of .crg double, float, long text, short text; of .erd text, float, double.
+        How numbers are stored, the first by default: {encodings}.
     force
         Replace the target if it exists.
     options
@@ -201,7 +194,7 @@ def convert(
         write = writer(target, encoding=encoding)
         if target.exists() and not force:
             raise ValueError(f"{target} exists; choose another name, or --force to replace it")
-        read, understood = options.profile(file)
+        read, understood = read_as_asked(file, options)
         stages.report("writing", 0.0)
         with replacing(target.parent) as temporary:
             write(read, temporary / target.name)
@@ -211,16 +204,3 @@ def convert(
         console.print(f"- {sentence}", soft_wrap=True)
     for name in written:
         console.print(f"wrote {target.parent / name}", soft_wrap=True)
-
-
-def _words(listed: str | None) -> list[str]:
-    """Split a list with commas; empty without one."""
-    return [] if listed is None else [word.strip() for word in listed.split(",") if word.strip()]
-
-
-def _numbers(listed: str | None, option: str, kind: Callable[[str], Number]) -> list[Number]:
-    """Read the numbers in a list with commas."""
-    try:
-        return [kind(word) for word in _words(listed)]
-    except ValueError:
-        raise ValueError(f"{option} must be numbers with commas between them, got {listed!r}") from None

@@ -3,36 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray, finite
+from movingfrf._basics.arrays import FloatArray, finite
 from movingfrf._basics.progress import Progress, silent
-from movingfrf._basics.welch import FLAT
+from movingfrf._basics.welch import Spectra
 from movingfrf._basics.wording import evenly_spread, named_paths
 from movingfrf.metrics.iri import PROCEDURE, iri
+from movingfrf.metrics.spectra import path_spectra
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
-from movingfrf.roughness.preparation import resampled, selected
 from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES
+from movingfrf.roughness.steps.resampled import resampled
+from movingfrf.roughness.steps.selected import selected
 
 # Resolutions of instruments and file formats that are looked for [m].
 RESOLUTIONS = (1e-2, 1e-3, 5e-4, 2.5e-4, 1e-4, 1e-5, 1e-6)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Pieces:
-    """Half-overlapping pieces of a profile for Welch's method; in brackets, between what each number is safe."""
-
-    # As many as `welch` takes [a convention: with 6 or 12 a road near the limit of a class changes over].
-    fewest: int = 8
-    # Length of the longest one [m]. Three lines of its spectrum make the lowest wave, so that the longest wave that
-    # ISO 8608 fits, 91 m, is within reach [280 to 1000].
-    longest: float = 400.0
-
-
-PIECES = Pieces()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,14 +37,6 @@ class Oddities:
 
 
 ODDITIES = Oddities()
-
-
-class Spectra(NamedTuple):
-    """Spectra of all paths, one-sided, and between the first and the last."""
-
-    spatial_frequency: FloatArray  # (line,) [cycle/m]
-    own: FloatArray  # (line, path) [m³]
-    both: ComplexArray  # (line,) [m³]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -180,7 +159,7 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
         )
     indices, reason = _indices(described, step, progress)
     progress("spectra", 0.0)
-    estimated = _spectra(described.columns, step)
+    estimated = path_spectra(described.columns, step)
     if reason:
         findings.append(reason)
     paths = []
@@ -266,7 +245,7 @@ def _path(
     estimated: Spectra,
 ) -> PathDescription:
     density = estimated.own[:, column]
-    spectrum = (estimated.spatial_frequency, density) if density.any() else (np.empty(0), np.empty(0))
+    spectrum = (estimated.frequency, density) if density.any() else (np.empty(0), np.empty(0))
     across = even.across[column] if even.across is not None else None
     return PathDescription(
         number=number,
@@ -280,33 +259,6 @@ def _path(
         spatial_frequency=spectrum[0],
         density=spectrum[1],
     )
-
-
-def _spectra(columns: FloatArray, step: float) -> Spectra:
-    """Estimate spectra by Welch's method, as `welch` does, of all paths in one pass over a long profile."""
-    from scipy.fft import rfft
-
-    stations, paths = columns.shape
-    pieces = max(PIECES.fewest, int(2 * step * stations / PIECES.longest))
-    length = min(max(2 * stations // (pieces + 1), 8), stations)
-    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(length) / length)
-    ramp = np.arange(length) - (length - 1) / 2
-    hop = length - length // 2
-    starts = np.arange(0, stations - length + 1, hop)
-    own, both = np.zeros((length // 2 + 1, paths)), np.zeros(length // 2 + 1, complex)
-    for start in starts:
-        piece = columns[start : start + length] - columns[start : start + length].mean(axis=0)
-        piece -= np.outer(ramp, ramp @ piece / (ramp @ ramp))
-        lines = rfft(piece * window[:, None], axis=0)
-        own += lines.real**2 + lines.imag**2
-        both += lines[:, 0].conj() * lines[:, -1]
-    scale = 2 * step / (window @ window) / len(starts)
-    if length % 2 == 0:  # the last line has no partner at a negative frequency
-        own[-1], both[-1] = own[-1] / 2, both[-1] / 2
-    n = np.arange(length // 2 + 1) / (length * step)
-    # Trend and window have taken from the lowest lines.
-    rounding = np.ptp(columns, axis=0) < FLAT
-    return Spectra(n[3:], scale * own[3:] * ~rounding, scale * both[3:] * (not rounding[[0, -1]].any()))
 
 
 def _indices(even: Profile, step: float, progress: Progress) -> tuple[dict[float, FloatArray], str]:
@@ -331,7 +283,7 @@ def _indices(even: Profile, step: float, progress: Progress) -> tuple[dict[float
 
 def _coherence(estimated: Spectra) -> tuple[FloatArray, FloatArray] | None:
     """Magnitude-squared coherence of the first and the last path, averaged over the bands of ISO 8608."""
-    n = estimated.spatial_frequency
+    n = estimated.frequency
     band = np.digitize(n, SMOOTHING_EDGES)
     sums = [
         np.bincount(band, values, minlength=SMOOTHING_EDGES.size + 1)[1:-1]

@@ -11,6 +11,7 @@ from movingfrf._basics.welch import FLAT
 from movingfrf._basics.wording import number, plain
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.metrics.measures import measures
+from movingfrf.metrics.spectra import elevation_spectrum
 from movingfrf.reports import plots
 from movingfrf.reports.axes import legend_above
 from movingfrf.reports.curves import contact_curves, distinct, foremost, left_out_dofs, readable, telling
@@ -135,7 +136,7 @@ def _class_words(result: xr.Dataset) -> str:
         return f"It was made from a spectrum, so none is fitted: {result.attrs['spectrum']}."
     said = []
     for contact in foremost(result):
-        fit = fit_iso(*plots.elevation_spectrum(result, contact))
+        fit = fit_iso(*elevation_spectrum(result, contact))
         if fit.reason:
             said.append(f"Under contact {contact} no class is fitted: {fit.reason}.")
             continue

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.welch import ESTIMATE, FLAT, welch
+from movingfrf.metrics.spectra import elevation_spectrum
 from movingfrf.reports.axes import (
     SPECTRUM_STYLE,
     Interval,
@@ -22,7 +21,6 @@ from movingfrf.reports.axes import (
     note,
 )
 from movingfrf.reports.curves import contact_curves, distinct, dof_curve, foremost, load_curves, place_curves
-from movingfrf.results.labels import time_step_of
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.spectra.iso import IsoRoad
 
@@ -304,28 +302,3 @@ def roughness_spectrum(result: xr.Dataset, ax: Axes) -> Axes:
     ax.set_xlabel("spatial frequency [cycle/m]")
     ax.set_ylabel("spectral density $G_d$ [m³]")
     return ax
-
-
-def elevation_spectrum(result: xr.Dataset, contact: int) -> tuple[FloatArray, FloatArray]:
-    """Estimate the one-sided spectrum of the elevation that a contact saw.
-
-    Parameters
-    ----------
-    result : xarray.Dataset
-        What `simulate` returned.
-    contact : int
-        Number of the contact.
-
-    Returns
-    -------
-    spatial_frequency : ndarray
-        Spatial frequency [cycle/m]; empty on a flat road or a record of a few samples.
-    density : ndarray
-        Spectral density [m³].
-    """
-    elevation = result.roughness.values[:, contact]
-    if len(elevation) < ESTIMATE.fewest_samples or np.ptp(elevation) < FLAT:
-        return np.empty(0), np.empty(0)
-    step = result.attrs["speed"] * time_step_of(result)
-    segments = max(ESTIMATE.segments, int(2 * step * len(elevation) / ESTIMATE.longest_stretch))
-    return welch(elevation, step, segments=segments)

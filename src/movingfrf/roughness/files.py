@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -15,10 +15,32 @@ from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
 from movingfrf.roughness.profile import Profile
 
+Function = TypeVar("Function", bound=Callable[..., Any])
+
 # All formats; text in columns last, since any text might be that.
 FORMATS = {
     form.name: form for form in (crg.FORMAT, erd.FORMAT, matlab.FORMAT, netcdf.FORMAT, gpx.FORMAT, text.FORMAT)
 }
+
+
+def naming_formats(function: Function) -> Function:
+    """Put the formats into a docstring, in the place of words in braces, so that it follows from the list."""
+    forms = FORMATS.values()
+    written = [form for form in forms if form.write]
+    said = {
+        "{titles}": ", ".join(form.title for form in forms),
+        "{names}": ", ".join(form.name for form in forms),
+        "{written titles}": ", ".join(form.title for form in written),
+        "{written names}": ", ".join(form.name for form in written),
+        "{written endings}": ", ".join(form.endings[0] for form in written),
+        "{only read}": ", ".join(form.title for form in forms if form not in written),
+        "{encodings}": "; ".join(
+            f"of {form.name} {', '.join(form.encodings)}" for form in written if any(form.encodings)
+        ),
+    }
+    for words, instead in said.items():
+        function.__doc__ = (function.__doc__ or "").replace(words, instead)
+    return function
 
 
 class ReadProfile(NamedTuple):
@@ -28,6 +50,7 @@ class ReadProfile(NamedTuple):
     understood: str
 
 
+@naming_formats
 def read_profile(
     file: str | Path,
     *,
@@ -37,7 +60,7 @@ def read_profile(
     crop_rims: bool = False,
     repair_gaps: float | None = None,
 ) -> ReadProfile:
-    r"""Read a profile from a file: OpenCRG, ERD, MATLAB, netCDF, GPX, or text in columns.
+    r"""Read a profile from a file: {titles}.
 
     What the file holds is converted to metres; nothing is subtracted, smoothed or filled in unless an option asks
     for it, and then the profile's `steps` say so.
@@ -47,7 +70,7 @@ def read_profile(
     file : str or Path
         The file.
     format : str, optional
-        `crg`, `erd`, `mat`, `netcdf`, `gpx` or `csv`; found from the file's first bytes, or else its ending.
+        Format of the file: {names}; found from its first bytes, or else its ending.
     columns : sequence of str or int, optional
         The columns, channels or arrays to take: the station, then elevations. Names, or numbers counted from 0. Of
         an ERD file, which has no stations, elevations only.
@@ -120,6 +143,7 @@ def read_profile(
     return ReadProfile(profile, _sentence(path.name, profile, raw))
 
 
+@naming_formats
 def write_profile(
     profile: Profile,
     file: str | Path,
@@ -136,10 +160,9 @@ def write_profile(
     file : str or Path
         The file; replaced if it exists.
     format : str, optional
-        `csv`, `erd`, `mat`, `netcdf` or `crg`; found from the file's ending.
+        {written names}; found from the file's ending.
     encoding : str, optional
-        How numbers are stored: of `crg` double (the default), float, long text or short text; of `erd` text (the
-        default), float or double.
+        How numbers are stored, the first by default: {encodings}.
 
     Raises
     ------

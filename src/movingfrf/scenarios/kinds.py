@@ -15,12 +15,12 @@ from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.rigid import RigidGuideway
 from movingfrf.guideways.track import Track, track
 from movingfrf.roughness.files import read_profile
-from movingfrf.roughness.preparation import prepared
+from movingfrf.roughness.preparation import Preparation, read_prepared
 from movingfrf.roughness.road import Road
 from movingfrf.roughness.spectra.coherence import Coherence, ExponentialCoherence, IsotropicCoherence
 from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.scenarios import forces
-from movingfrf.scenarios.kind import Family, Kind, chosen, family, keys_of
+from movingfrf.scenarios.kind import Family, Kind, family, keys_of
 from movingfrf.scenarios.roads import ROADS, SPECTRA
 from movingfrf.stepping.finite_plate import finite_plate
 from movingfrf.stepping.finite_track import finite_track
@@ -36,13 +36,12 @@ from movingfrf.vehicles.trucks import Axle, Unit, WalkingBeam, truck
 from movingfrf.vehicles.vehicle import Vehicle
 
 READING = keys_of(read_profile)
-PREPARING = keys_of(prepared, without=["profile"])
+PREPARING = keys_of(Preparation)
 
 
 def profile(*, interval: tuple[float, float], **given: Any) -> Road:
     """Read a measured profile, and prepare it as far as options ask for it; the description says what was done."""
-    found, understood = read_profile(**chosen(given, READING))
-    ready = prepared(found, **chosen(given, PREPARING))
+    ready, understood = read_prepared(**given)
     return Road(ready, "; ".join([understood, *ready.steps]))
 
 

@@ -223,8 +223,8 @@ def eliminate(matrix, right):
 
 
 # The vehicle's half of a step; `half_step.HalfStep` has the same in NumPy and says what each does. They are written
-# into the loops that call them: as calls, or with an array taken out of the tuple more than once, a step took half as
-# long again.
+# into the loops that call them: as calls, or with an array taken out of the tuple more than once, a step took half
+# as long again.
 
 
 @njit(cache=True, fastmath=FAST, inline="always")

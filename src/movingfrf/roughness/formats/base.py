@@ -64,6 +64,7 @@ class Format(NamedTuple):
     """A format: how it is recognised, read and written."""
 
     name: str
+    title: str  # what it is called in a sentence
     endings: tuple[str, ...]
     recognises: Callable[[bytes], bool]  # from the first bytes of a file
     read: Callable[[Path, Sequence[ColumnKey] | None], RawProfile]

@@ -389,4 +389,11 @@ def _words(layout: ColumnLayout, used: Sequence[int]) -> str:
 
 
 # Text in columns has no signature: it is what a file is taken for that has none.
-FORMAT = Format("csv", (".csv", ".txt", ".tsv", ".dat", ".prn", ".asc"), lambda head: False, read, write)
+FORMAT = Format(
+    "csv",
+    "CSV or other text in columns",
+    (".csv", ".txt", ".tsv", ".dat", ".prn", ".asc"),
+    lambda head: False,
+    read,
+    write,
+)

@@ -116,4 +116,4 @@ def _recognises(head: bytes) -> bool:
     return re.search(rb"^\$(ROAD_CRG|KD_DEFINITION)", head, re.MULTILINE | re.IGNORECASE) is not None
 
 
-FORMAT = Format("crg", (".crg",), _recognises, read, write, tuple(ENCODINGS))
+FORMAT = Format("crg", "OpenCRG", (".crg",), _recognises, read, write, tuple(ENCODINGS))

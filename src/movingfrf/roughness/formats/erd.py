@@ -209,4 +209,4 @@ def _recognises(head: bytes) -> bool:
     return head.startswith(HEADER.signature.encode())
 
 
-FORMAT = Format("erd", (".erd",), _recognises, read, write, tuple(ENCODINGS))
+FORMAT = Format("erd", "ERD", (".erd",), _recognises, read, write, tuple(ENCODINGS))

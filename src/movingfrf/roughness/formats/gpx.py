@@ -144,4 +144,4 @@ def _recognises(head: bytes) -> bool:
     return b"<gpx" in head
 
 
-FORMAT = Format("gpx", (".gpx",), _recognises, read)
+FORMAT = Format("gpx", "GPX", (".gpx",), _recognises, read)

@@ -38,4 +38,4 @@ def write(profile: Profile, path: Path, encoding: str = "") -> None:
     savemat(path, values, appendmat=False, oned_as="column")
 
 
-FORMAT = Format("mat", (".mat",), matlab_file.recognised, read, write)
+FORMAT = Format("mat", "MATLAB", (".mat",), matlab_file.recognised, read, write)

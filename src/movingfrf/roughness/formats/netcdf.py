@@ -37,4 +37,6 @@ def write(profile: Profile, path: Path, encoding: str = "") -> None:
     xr.Dataset(variables, {"distance": distance}, attributes).to_netcdf(path, engine="h5netcdf")
 
 
-FORMAT = Format("netcdf", (".nc", ".nc4", ".h5"), lambda head: head.startswith(hdf.SIGNATURE), read, write)
+FORMAT = Format(
+    "netcdf", "netCDF", (".nc", ".nc4", ".h5"), lambda head: head.startswith(hdf.SIGNATURE), read, write
+)

@@ -1,0 +1,80 @@
+"""Spectra of elevations: of the paths of a profile, and of what a contact saw of one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.welch import ESTIMATE, FLAT, Spectra, cross_spectra, welch
+from movingfrf.results.labels import time_step_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pieces:
+    """Half-overlapping pieces of an elevation for Welch's method; in brackets, between what each number is safe."""
+
+    # [a convention: with 6 or 12 a road near the limit of a class changes over].
+    fewest: int = ESTIMATE.segments
+    # Length of the longest one of a profile [m]. Three lines of its spectrum make the lowest wave, so that the
+    # longest wave that ISO 8608 fits, 91 m, is within reach [280 to 1000].
+    longest: float = 400.0
+    # The same of what a contact saw [m]: it resolves the longest waves of ISO 8608 twice over [a convention].
+    longest_seen: float = 250.0
+
+
+PIECES = Pieces()
+
+
+def path_spectra(columns: FloatArray, step: float) -> Spectra:
+    """Estimate the spectra of all paths of a profile, and that between the first and the last.
+
+    Parameters
+    ----------
+    columns : ndarray, shape (distance, path)
+        Elevation [m].
+    step : float
+        Distance between stations [m].
+
+    Returns
+    -------
+    Spectra
+        Spatial frequency [cycle/m] and densities [m³]; zero where an elevation is flat.
+    """
+    found = cross_spectra(columns, step, segments=_pieces(len(columns) * step, PIECES.longest))
+    flat = np.ptp(columns, axis=0) < FLAT
+    return found._replace(own=found.own * ~flat, both=found.both * (not flat[[0, -1]].any()))
+
+
+def elevation_spectrum(result: xr.Dataset, contact: int) -> tuple[FloatArray, FloatArray]:
+    """Estimate the one-sided spectrum of the elevation that a contact saw.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What `simulate` returned.
+    contact : int
+        Number of the contact.
+
+    Returns
+    -------
+    spatial_frequency : ndarray
+        Spatial frequency [cycle/m]; empty on a flat road or a record of a few samples.
+    density : ndarray
+        Spectral density [m³].
+    """
+    elevation = result.roughness.values[:, contact]
+    if len(elevation) < ESTIMATE.fewest_samples or np.ptp(elevation) < FLAT:
+        return np.empty(0), np.empty(0)
+    step = result.attrs["speed"] * time_step_of(result)
+    return welch(elevation, step, segments=_pieces(len(elevation) * step, PIECES.longest_seen))
+
+
+def _pieces(length: float, longest: float) -> int:
+    """How many pieces a length is cut into."""
+    return max(PIECES.fewest, int(2 * length / longest))

@@ -1,0 +1,53 @@
+"""Some of the paths."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from movingfrf._basics.checks import checking, shown
+from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.steps.base import Step, changed
+
+
+def selected(profile: Profile, *, paths: Sequence[int]) -> Profile:
+    """Take some of the paths, in the order in which they are named.
+
+    Parameters
+    ----------
+    profile : Profile
+        The road.
+    paths : sequence of int
+        Number of each path to take, counted from 0.
+
+    Returns
+    -------
+    Profile
+        With a column for each.
+
+    Raises
+    ------
+    ValueError
+        If there is no such path, or none is named.
+
+    Examples
+    --------
+    >>> both = Profile([0.0, 1.0, 2.0, 3.0], [[0.0, 1.0]] * 4)
+    >>> selected(both, paths=[1]).elevation[0].tolist()
+    [1.0]
+    """
+    with checking() as check:
+        if np.ndim(paths) != 1 or not len(paths):
+            check.refuse("paths", f"must be a list of at least one number of a path, got {shown(paths)}")
+        else:
+            for path in paths:
+                if check.whole("paths", path) >= profile.paths:
+                    check.refuse("paths", f"must be below {profile.paths}, the number of paths, got {path}")
+    across = None if profile.across is None else tuple(profile.across[path] for path in paths)
+    return changed(
+        profile, f"took the paths {list(paths)}", elevation=profile.columns[:, list(paths)], across=across
+    )
+
+
+STEP = Step(selected, {"paths": "paths"})
