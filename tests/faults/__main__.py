@@ -63,7 +63,12 @@ REPORTS = [
     "tests/test_cli.py",
 ]
 # These where it lies in what a user writes.
-SCENARIOS = ["tests/test_scenario.py", "tests/test_roads.py", "tests/test_vehicle_scenarios.py"]
+SCENARIOS = [
+    "tests/test_scenario.py",
+    "tests/test_roads.py",
+    "tests/test_vehicle_scenarios.py",
+    "tests/test_finite_scenarios.py",
+]
 SHOWN = ("reports/", "commands/", "results/files", "_basics/wording")
 
 # These first where the fault lies in the independent way, and last otherwise.

@@ -16,6 +16,15 @@ FAULTS = [
     Fault("key that may be left out", "scenarios/kind.py", "=_without_none(", "=("),
     Fault("unit of the neighbour", "scenarios/kind.py", "[{units[place]}", "[{units[0]}"),
     Fault("part of a road for no journey", "scenarios/reading.py", "key.item == family.makes", "False"),
+    # A scenario stepped through time.
+    Fault(
+        "weight of its own on a bridge",
+        "scenarios/stepped.py",
+        "superposed=superposed and not isinstance(guideway, FiniteGuideway)",
+        "superposed=superposed",
+    ),
+    Fault("run-in off the road", "scenarios/stepped.py", "max(0.0, math.floor(behind", "max(0.0, math.ceil(behind"),
+    Fault("no room to run in", "scenarios/stepped.py", "journey.start - run_in * journey.speed", "journey.start"),
     # Profiles from files.
     Fault("rows for columns", "_basics/matlab_file.py", 'reshape(shape, order="F")', "reshape(shape)"),
     Fault("packed bombs let in", "_basics/matlab_file.py", "most or limit)", "most or 0)"),
