@@ -60,10 +60,10 @@ FAULTS = [
     Fault(
         "sag leaves the loads alone",
         "response/survey.py",
-        "np.linalg.solve(at_rest.matrices[..., 0].real, system.vehicle.static_loads)",
+        "solved(at_rest.matrices, system.vehicle.static_loads[:, None] + 0j)[:, 0].real",
         "system.vehicle.static_loads",
     ),
-    Fault("steady basin reversed", "response/survey.py", "deflection=frf @ load", "deflection=frf.T @ load"),
+    Fault("steady basin reversed", "response/survey.py", ".real @ load", ".real.T @ load"),
     Fault("static sag missing", "response/simulation.py", "deflected += steady.deflection[:, None]", "pass"),
     Fault(
         "truncation of the first case only",

@@ -64,8 +64,8 @@ POWERS = (0, 2, 4)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Road:
-    """A random road under a vehicle."""
+class _Ensemble:
+    """All roads of a spectrum, under a vehicle."""
 
     vehicle: Vehicle
     spectrum: Spectrum
@@ -196,7 +196,7 @@ def random_response(
     progress("steady state", 0.0)
     surveyed = survey(system)
     steady = surveyed.steady
-    densities = _densities(system, _Road(vehicle=vehicle, spectrum=spectrum, coherence=shared, speed=speed))
+    densities = _densities(system, _Ensemble(vehicle=vehicle, spectrum=spectrum, coherence=shared, speed=speed))
     progress("spectral densities", 0.0)
     lines = _resolved(densities, vehicle, _edges(spectrum, speed))
     statistics = _statistics(vehicle, lines, exposure)
@@ -302,7 +302,7 @@ def _outputs(vehicle: Vehicle) -> int:
     return _parts(vehicle)["roughness"].stop
 
 
-def _densities(system: System, road: _Road) -> Callable[[FloatArray], FloatArray]:
+def _densities(system: System, road: _Ensemble) -> Callable[[FloatArray], FloatArray]:
     """Spectral densities of all outputs, (frequency, output), as a function of the frequency [Hz]."""
 
     def densities(frequency: FloatArray) -> FloatArray:

@@ -8,7 +8,6 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import SolveError
-from movingfrf.response.batches import unthreaded
 from movingfrf.response.system import System, Tables
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -188,8 +187,7 @@ def require_stable(system: System, along_axis: Tables) -> None:
     SolveError
         If a vibration grows, with its frequency and growth where they can be found.
     """
-    with unthreaded(system.entries):
-        growing = growing_vibrations(system, along_axis)
+    growing = growing_vibrations(system, along_axis)
     if growing:
         raise SolveError(
             f"vehicle and guideway are unstable together at {system.speed:g} m/s: {_described(system)}; "

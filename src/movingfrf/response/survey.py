@@ -9,7 +9,7 @@ import numpy as np
 
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
-from movingfrf.response.batches import applied
+from movingfrf.response.batches import applied, solved, unthreaded
 from movingfrf.response.line import Line
 from movingfrf.response.stability import along_the_axis, require_stable
 from movingfrf.response.system import System, Tables
@@ -84,6 +84,13 @@ def survey(
     SolveError
         If vehicle and guideway are unstable together.
     """
+    with unthreaded(system.entries):
+        return _surveyed(system, line, roughness, truncation)
+
+
+def _surveyed(
+    system: System, line: Line | None, roughness: ComplexArray | None, truncation: float | None
+) -> Survey:
     at_rest, axis = np.zeros(1, complex), along_the_axis(system.vehicle, system.speed)
     critical_speed = float(system.guideway.critical_speed)
     findings = find.near_critical(system.speed, critical_speed)
@@ -126,9 +133,8 @@ def steady_state(system: System, at_rest: Tables) -> SteadyState:
         Loads and deflections. With more contacts than rigid motions the sag of the road redistributes the
         weight: (I + D G) F₀ = F_s at ω = 0.
     """
-    frf = at_rest.frf[..., 0].real
-    load = np.linalg.solve(at_rest.matrices[..., 0].real, system.vehicle.static_loads)
-    return SteadyState(load=load, deflection=frf @ load)
+    load = solved(at_rest.matrices, system.vehicle.static_loads[:, None] + 0j)[:, 0].real
+    return SteadyState(load=load, deflection=at_rest.frf[..., 0].real @ load)
 
 
 class Influence(NamedTuple):
