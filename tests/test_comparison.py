@@ -18,10 +18,11 @@ import movingfrf as mf
 from movingfrf.commands.main import main
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import shortened
+from movingfrf.scenarios.stepped import elements
 from movingfrf.studies.comparison.comparison import Point, peak_memory, time_at
 from movingfrf.studies.comparison.convergence import converged, maximum_error, relative_l2
 from movingfrf.studies.comparison.files import as_json, convergence_as_json, curve_as_csv, table_as_csv
-from movingfrf.studies.comparison.methods import Case, elements
+from movingfrf.studies.comparison.methods import Case
 from movingfrf.studies.comparison.page import render
 from tests.test_scenario import LOADS, edited
 
@@ -170,7 +171,7 @@ def test_the_converged_answer_knows_when_it_has_not_converged():
 
 
 def test_elements_are_round_shares_of_the_bending_length():
-    assert elements(parse_scenario(SHORT)) == [0.5, 0.25]
+    assert elements(parse_scenario(SHORT).guideway) == [0.5, 0.25]
 
 
 def test_memory_of_a_method_is_measured_in_a_process_of_its_own():

@@ -77,6 +77,14 @@ def test_bridge_example(capsys):
     assert middle.max() == pytest.approx(2.3839e-3, rel=1e-4)
 
 
+def test_bridge_scenario_example():
+    """The same bridge by elements; under the mass, which the modes of bridge.py give as well."""
+    result = mf.read_scenario(ROOT / "examples" / "bridge.toml").run(method="cdfm")
+    assert result.deflection.values.max() == pytest.approx(2.3578e-3, rel=1e-4)
+    by_modes = loaded("bridge").crossing().deflection.values.max()
+    assert result.deflection.values.max() == pytest.approx(by_modes, rel=1e-4)
+
+
 @pytest.mark.slow
 def test_wide_road_example():
     """On roads without anything in common the wheels of an axle feel little of each other."""

@@ -66,6 +66,7 @@ SCENARIOS = [
     "tests/test_schema.py",
     "tests/test_roads.py",
     "tests/test_vehicle_scenarios.py",
+    "tests/test_finite_scenarios.py",
 ]
 SHOWN = ("reports/", "commands/", "results/files", "_basics/wording")
 

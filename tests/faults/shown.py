@@ -19,6 +19,15 @@ FAULTS = [
     Fault("kind that need not be said", "scenarios/schema.py", "kind.name != family.default else []", "0 else []"),
     Fault("infinity that is a mistake", "scenarios/schema.py", '["number", "null"]', '"number"'),
     Fault("list of no tables", "scenarios/schema.py", '{"minItems": 1}', "{}"),
+    # A scenario stepped through time.
+    Fault(
+        "weight of its own on a bridge",
+        "scenarios/stepped.py",
+        "superposed=superposed and not isinstance(guideway, FiniteGuideway)",
+        "superposed=superposed",
+    ),
+    Fault("run-in off the road", "scenarios/stepped.py", "max(0.0, math.floor(behind", "max(0.0, math.ceil(behind"),
+    Fault("no room to run in", "scenarios/stepped.py", "journey.start - run_in * journey.speed", "journey.start"),
     # Profiles from files.
     Fault("rows for columns", "_basics/matlab_file.py", 'reshape(shape, order="F")', "reshape(shape)"),
     Fault("packed bombs let in", "_basics/matlab_file.py", "most or limit)", "most or 0)"),

@@ -34,7 +34,7 @@ app = App(
     movingfrf vehicles lists vehicles to take from the catalogue, or describes one.
 
     3. movingfrf run truck.toml --output out/truck solves it and writes result.nc (netCDF: xarray, MATLAB, ...),
-    summary.json and report.html.
+    summary.json and report.html; --method cdfm steps it through time, which a finite road (a bridge) needs.
 
     4. movingfrf compare truck.toml --output out/compared solves it by other methods too, stepping in time among
     them, and says how long each takes and how far it is from the converged answer.

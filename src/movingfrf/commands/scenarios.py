@@ -112,7 +112,13 @@ def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Param
         console.print(f"wrote {output}", soft_wrap=True)
 
 
-def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] = None) -> None:
+def run(
+    file: Path,
+    /,
+    *,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    method: str = "moving-frf",
+) -> None:
     """Solve a scenario; write result.nc, summary.json and report.html.
 
     The three files appear together when everything is done; an earlier result stays until then, and stays if
@@ -124,6 +130,10 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
         The scenario.
     output
         The folder to write into; out/NAME beside the scenario by default.
+    method
+        How: moving-frf, in the frequency domain, where the road is endless; step by step in time, on a finite road
+        as it is and on a stretch that is cut out of an endless one, a vehicle by cdfm (with the road as one system)
+        or sim (side by side, contact forces exchanged), prescribed loads by newmark.
     """
     console = plain_console()
     stages = Stages()
@@ -135,6 +145,7 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
 
         from movingfrf.metrics.measures import measures
         from movingfrf.reports.result import render
+        from movingfrf.reports.ways import way
         from movingfrf.results.files import replacing, save, summary_as_json
         from movingfrf.scenarios.reading import read_scenario
         from movingfrf.scenarios.scenario import Drive
@@ -145,17 +156,18 @@ def run(file: Path, /, *, output: Annotated[Path | None, Parameter(alias="-o")] 
         with replacing(folder) as temporary, warnings.catch_warnings():
             # Findings are printed with the results; no need to warn of them as well.
             warnings.simplefilter("ignore", ValidityWarning)
-            result = scenario.run(stages.report)
+            result = scenario.run(stages.report, method)
             stages.report("measures", 0.0)
             found = measures(result)
             stages.report("result.nc", 0.0)
             save(result, temporary / "result.nc")
             (temporary / "summary.json").write_text(summary_as_json(result, found), encoding="utf-8")
             stages.report("report.html", 0.0)
-            page = render(result, guideway=scenario.guideway, scenario_text=scenario.text, title=scenario.name)
+            page = render(result, guideway=scenario.endless, scenario_text=scenario.text, title=scenario.name)
             (temporary / "report.html").write_text(page, encoding="utf-8")
     if isinstance(scenario.case, Drive):
-        console.print(f"Road: {scenario.case.road.description}\n", soft_wrap=True)
+        console.print(f"Road: {scenario.case.road.description}", soft_wrap=True)
+    console.print(f"Method: {way(result).name}\n", soft_wrap=True)
     print_result(console, result, found)
     print_table(console, stages.table())
     for name in ("report.html", "result.nc", "summary.json"):

@@ -17,6 +17,7 @@ from movingfrf.reports.curves import contact_curves, distinct, foremost, left_ou
 from movingfrf.reports.figures import SIZE, Illustration, blank, illustrated, panels
 from movingfrf.reports.frf import frf_figures
 from movingfrf.reports.tables import Table, measure_tables
+from movingfrf.reports.ways import is_stepped, stepped_road, way
 from movingfrf.results.labels import duration_of, speed_in_words
 from movingfrf.roughness.fitting import fit_iso
 
@@ -44,25 +45,52 @@ def coupled_summary(result: xr.Dataset) -> str:
         f"A vehicle of {weight} kN with {wording.count(contacts, 'contact')} and "
         f"{wording.count(dofs, 'degree of freedom', 'degrees of freedom')} travels at {speed_in_words(result)} for "
         f"{plain(duration_of(result))} s over a {surface}; contact forces, deflections of "
-        "the road and motions of the vehicle were computed together, in the frequency domain, with moving "
-        "frequency response functions (moving FRFs)."
+        f"the road and motions of the vehicle were computed together, {way(result).words}."
     )
 
 
-def coupled_method() -> list[str]:
+def coupled_method(result: xr.Dataset) -> list[str]:
     """Say how it was computed, and what is assumed."""
     return [
         "Vehicle and road are linear, and the speed is constant.",
-        "The road is infinitely long and the same everywhere along its length; only its surface is rough.",
+        *(_stepped(result) if is_stepped(result) else _transformed()),
         "Contact is kept at all times: where a total contact force would turn negative the model pulls, and the "
         "findings say so.",
+        "Forces, deflections and motions are positive downward (pitch: nose down), elevations upward; positions "
+        "are positive ahead. Spectra are one-sided, estimated by Welch's method (Hann window, half overlap).",
+    ]
+
+
+def _transformed() -> list[str]:
+    return [
+        "The road is infinitely long and the same everywhere along its length; only its surface is rough.",
         "Before the record the vehicle has travelled on the smooth road for ever: static loads and steady sag are "
         "there from the start, and the roughness sets in from the foremost contact on.",
         "At every frequency the contact forces F solve (I + D G) F = D R, with G the moving FRFs between the "
         "contacts, D the dynamic stiffness of the vehicle at its contacts and R the elevation under them. Beyond "
         "the truncation G = 0: the road is rigid there, the vehicle is not.",
-        "Forces, deflections and motions are positive downward (pitch: nose down), elevations upward; positions "
-        "are positive ahead. Spectra are one-sided, estimated by Welch's method (Hann window, half overlap).",
+    ]
+
+
+def _stepped(result: xr.Dataset) -> list[str]:
+    run_in = result.attrs["run_in"]
+    before = (
+        f"Before the record the weight travels along the smooth road for {plain(run_in)} s, from a road at rest "
+        "under it"
+        if run_in
+        else "The record begins with the road at rest under the vehicle's weight"
+    )
+    return [
+        stepped_road(result),
+        before
+        + (
+            ". Since the road is the same everywhere, what the roughness adds is stepped on its own afterwards."
+            if result.attrs["superposed"]
+            else ", and is stepped on together with what the roughness adds. Static levels are those at the end of "
+            "that: on a bridge, which gives way differently everywhere, they are a beginning and no mean."
+        ),
+        "In every step the contact forces solve F = k (z − w + r) + c (ż − ẇ − v ∂w/∂x + ṙ), with z the vehicle, w "
+        "the road and r the elevation at the contact.",
     ]
 
 
@@ -71,8 +99,8 @@ def coupled_tables(result: xr.Dataset) -> list[Table]:
     return measure_tables(result, measures(result), COUPLED_CAPTIONS)
 
 
-def of_coupled(result: xr.Dataset, guideway: Guideway) -> list[Illustration]:
-    """Illustrate the response of a vehicle and a guideway."""
+def of_coupled(result: xr.Dataset, guideway: Guideway | None) -> list[Illustration]:
+    """Illustrate the response of a vehicle and a guideway; one that has no moving FRF is None."""
     return [
         _roughness_figure(result),
         *frf_figures(result, guideway, _contact_offsets(result)),

@@ -40,8 +40,13 @@ class FrfAxes:
 FRF_AXES = FrfAxes()
 
 
-def frf_figures(result: xr.Dataset, guideway: Guideway, offsets: list[float]) -> list[Illustration]:
-    """Illustrate moving FRFs between points some offsets [m] apart, as far as they matter to a result."""
+def frf_figures(result: xr.Dataset, guideway: Guideway | None, offsets: list[float]) -> list[Illustration]:
+    """Illustrate moving FRFs between points some offsets [m] apart, as far as they matter to a result.
+
+    A finite road has none: it is not the same everywhere.
+    """
+    if guideway is None:
+        return []
     speed, truncation = result.attrs["speed"], result.attrs.get("truncation", 0.0)
 
     def frf(frequency: FloatArray, ahead: Sequence[float]) -> ComplexArray:

@@ -15,6 +15,7 @@ from movingfrf.reports.curves import load_curves, point_curves
 from movingfrf.reports.figures import SIZE, Illustration, blank, illustrated
 from movingfrf.reports.frf import frf_figures
 from movingfrf.reports.tables import Column, Row, Table
+from movingfrf.reports.ways import is_stepped, stepped_road, way
 from movingfrf.results.labels import duration_of, speed_in_words
 
 if TYPE_CHECKING:
@@ -26,18 +27,20 @@ def loaded_summary(result: xr.Dataset) -> str:
     return (
         f"{wording.count(result.sizes['load'], 'prescribed force')} on a road, travelling at "
         f"{speed_in_words(result)} for {plain(duration_of(result))} s from rest at t = 0; the deflection at "
-        f"{wording.count(result.sizes['point'], 'point')} travelling along was computed in the frequency domain "
-        "with moving frequency response functions (moving FRFs)."
+        f"{wording.count(result.sizes['point'], 'point')} travelling along was computed {way(result).words}."
     )
 
 
-def loaded_method() -> list[str]:
+def loaded_method(result: xr.Dataset) -> list[str]:
     """Say how it was computed, and what is assumed."""
     return [
-        "The road is linear, infinitely long and the same everywhere along its length; the speed is constant.",
+        "The road is linear; the speed is constant.",
         "The forces are given and do not depend on what the road does. Before t = 0 the road is at rest; a force "
         "that is not zero at t = 0 is switched on at that instant.",
-        "At every frequency the deflections are W = G F, with G the moving FRFs between loads and points.",
+        stepped_road(result)
+        if is_stepped(result)
+        else "The road is infinitely long and the same everywhere along its length. At every frequency the "
+        "deflections are W = G F, with G the moving FRFs between loads and points.",
         "Forces and deflections are positive downward; positions are positive ahead. Spectra are one-sided, "
         "estimated by Welch's method (Hann window, half overlap).",
     ]
@@ -89,8 +92,8 @@ def _point_table(result: xr.Dataset) -> Table:
     return Table("Deflections of the road, down.", "observation point", columns, rows)
 
 
-def of_loads(result: xr.Dataset, guideway: Guideway) -> list[Illustration]:
-    """Illustrate the response to prescribed loads."""
+def of_loads(result: xr.Dataset, guideway: Guideway | None) -> list[Illustration]:
+    """Illustrate the response to prescribed loads; a guideway that has no moving FRF is None."""
     return [
         _prescribed_figure(result),
         _point_deflections_figure(result),

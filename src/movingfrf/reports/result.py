@@ -14,21 +14,22 @@ from movingfrf.reports.figures import drawing
 from movingfrf.reports.loaded import loaded_method, loaded_summary, loaded_tables, of_loads
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Setting
+from movingfrf.reports.ways import is_stepped, way_settings
 from movingfrf.results.labels import duration_of, time_step_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def render(result: xr.Dataset, *, guideway: Guideway, scenario_text: str = "", title: str = "") -> str:
+def render(result: xr.Dataset, *, guideway: Guideway | None, scenario_text: str = "", title: str = "") -> str:
     """Write the report of a result.
 
     Parameters
     ----------
     result : xarray.Dataset
-        What `simulate` or `moving_loads` returned.
-    guideway : Guideway
-        The guideway that it was computed for; its moving FRFs are drawn.
+        What `simulate`, `moving_loads`, `cdfm`, `sim` or `newmark_loads` returned.
+    guideway : Guideway, optional
+        The guideway that it was computed for; its moving FRFs are drawn. None: a finite road, which has none.
     scenario_text : str
         Text of the scenario file, shown as it is; by default what the result carries, if anything.
     title : str
@@ -48,34 +49,39 @@ def render(result: xr.Dataset, *, guideway: Guideway, scenario_text: str = "", t
         summary=coupled_summary(result) if coupled else loaded_summary(result),
         settings=_settings(result),
         findings=_findings(result),
-        no_findings=_no_findings(coupled),
+        no_findings=_no_findings(result),
         tables=coupled_tables(result) if coupled else loaded_tables(result),
         figures=figures,
-        method=coupled_method() if coupled else loaded_method(),
+        method=coupled_method(result) if coupled else loaded_method(result),
         scenario=scenario_text or result.attrs.get("scenario", ""),
     )
 
 
 def _settings(result: xr.Dataset) -> list[Setting]:
     attrs, duration, step = result.attrs, duration_of(result), time_step_of(result)
-    critical = attrs.get("critical_speed", float("inf"))
     speed = attrs["speed"]
     found = [
+        *way_settings(result),
         Setting("Speed", f"{plain(speed)} m/s", f"{plain(round(3.6 * speed, 6))} km/h"),
         Setting("Duration", f"{plain(duration)} s"),
         Setting("Distance", f"{plain(float(f'{duration * abs(speed):.12g}'))} m"),
         Setting("Time step", f"{plain(1e3 * step)} ms", f"{result.sizes['time']} samples"),
         *_truncation_settings(result),
-        Setting(
-            "Critical speed of the road",
-            f"{number(critical)} m/s" if np.isfinite(critical) else "none",
-            f"{number(3.6 * critical)} km/h; this speed is {number(100 * abs(speed) / critical, 3)} % of it"
-            if np.isfinite(critical)
-            else "",
-        ),
     ]
+    if "critical_speed" in attrs:
+        critical = attrs["critical_speed"]
+        found.append(
+            Setting(
+                "Critical speed of the road",
+                f"{number(critical)} m/s" if np.isfinite(critical) else "none",
+                f"{number(3.6 * critical)} km/h; this speed is {number(100 * abs(speed) / critical, 3)} % of it"
+                if np.isfinite(critical)
+                else "",
+            )
+        )
     if "start" in attrs:
-        found.append(Setting("Start", f"{plain(attrs['start'])} m", "of the vehicle's reference point, at t = 0"))
+        of = "the vehicle's reference point" if "contact_force" in result else "the frame that travels along"
+        found.append(Setting("Start", f"{plain(attrs['start'])} m", f"of {of}, at t = 0"))
     if "blend" in attrs:
         found.append(Setting("Blend", f"{plain(attrs['blend'])} m", "over which the profile sets in"))
     if "datum" in attrs:
@@ -118,7 +124,10 @@ def _findings(result: xr.Dataset) -> list[str]:
     return [f"{message[:1].upper()}{message[1:].rstrip('.')}." for message in messages]
 
 
-def _no_findings(coupled: bool) -> str:
+def _no_findings(result: xr.Dataset) -> str:
+    coupled = "contact_force" in result
+    if is_stepped(result):
+        return "No findings: contact is kept throughout." if coupled else "No findings."
     if coupled:
         return (
             "No findings: contact is kept throughout, the speed is well below critical, the response dies away "

@@ -127,6 +127,7 @@ def moving_loads(
     }
     attributes = {
         **provenance("Response of a guideway to prescribed moving loads"),
+        "method": "moving-frf",
         "speed": float(speed),
         "time_step": float(time_step),
         "truncation": 0.5 / time_step if truncation is None else float(truncation),

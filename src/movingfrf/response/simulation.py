@@ -174,6 +174,7 @@ def simulate(
     }
     attributes = {
         **provenance("Coupled response of a vehicle and a guideway"),
+        "method": "moving-frf",
         "speed": float(speed),
         "duration": float(duration),
         "start": float(start),

@@ -13,7 +13,7 @@ from movingfrf.guideways.beams import Beam, EulerBernoulliBeam, TimoshenkoBeam
 from movingfrf.guideways.foundations import Foundation, OnMass, ShearLayer, Spring
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.rigid import RigidGuideway
-from movingfrf.guideways.track import track
+from movingfrf.guideways.track import Track, track
 from movingfrf.roughness.files import read_profile
 from movingfrf.roughness.preparation import prepared
 from movingfrf.roughness.road import Road
@@ -22,6 +22,8 @@ from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.scenarios import forces
 from movingfrf.scenarios.kind import Family, Kind, chosen, family, keys_of
 from movingfrf.scenarios.roads import ROADS, SPECTRA
+from movingfrf.stepping.finite_plate import finite_plate
+from movingfrf.stepping.finite_track import finite_track
 from movingfrf.vehicles.assembly import Body, Hinge, Suspension, assemble
 from movingfrf.vehicles.cars import full_car, half_car, quarter_car
 from movingfrf.vehicles.catalogue import catalogue
@@ -50,7 +52,8 @@ PROFILE = Kind(
 
 BEAM = family("beam", Beam, EulerBernoulliBeam, TimoshenkoBeam)
 FOUNDATION = family("foundation", Foundation, Spring, ShearLayer, OnMass)
-GUIDEWAY = family("guideway", Guideway, track, RigidGuideway, default="track")
+TRACK = family("track", Track, track)
+GUIDEWAY = family("guideway", Guideway, track, RigidGuideway, finite_track, finite_plate, default="track")
 VEHICLE = family(
     "vehicle",
     Vehicle,
@@ -88,6 +91,7 @@ TABLES: Mapping[Any, Family] = {
     for one in (
         BEAM,
         FOUNDATION,
+        TRACK,
         GUIDEWAY,
         VEHICLE,
         CONTACT,

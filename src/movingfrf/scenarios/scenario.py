@@ -8,13 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import Fault
+from movingfrf._basics.checks import Fault, nearest, shown
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.response.moving_loads import moving_loads
 from movingfrf.response.simulation import simulate
 from movingfrf.roughness.road import Road
 from movingfrf.scenarios.forces import Loads
+from movingfrf.scenarios.stepped import EXCHANGED, Division, coupled, elements, loaded, require_endless
+from movingfrf.stepping.exchange import SOLVED
+from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -38,6 +41,13 @@ class ScenarioError(ValueError):
         count = "1 fault" if len(self.faults) == 1 else f"{len(self.faults)} faults"
         lines = [f"  {fault.name} {fault.message}".rstrip() for fault in self.faults]
         super().__init__("\n".join([f"{source}: {count}", *lines]))
+
+
+# What computes a case unless something else is asked for; the methods that step a drive, and how each finds contact
+# forces; the one that steps a passage.
+MOVING_FRF = "moving-frf"
+COUPLED_BY = {"cdfm": SOLVED, "sim": EXCHANGED}
+NEWMARK = "newmark"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -71,37 +81,52 @@ class Drive:
         """Where the deflection is wanted, ahead of the reference point [m]."""
         return self.vehicle.positions
 
-    def run(self, progress: Progress = silent) -> xr.Dataset:
+    def run(self, progress: Progress = silent, method: str = MOVING_FRF) -> xr.Dataset:
         """Compute the response.
 
         Parameters
         ----------
         progress : callable
             Called with the name of a stage and the fraction of it that is done.
+        method : str
+            `moving-frf`, or `cdfm` or `sim`, which step through time: on a finite road as it is, otherwise on a
+            stretch that is cut out of an endless track.
 
         Returns
         -------
         xarray.Dataset
-            What `simulate` returns, with what the road is in its attributes.
+            What `simulate`, `cdfm` or `sim` returns, with what the road is in its attributes.
 
         Raises
         ------
+        ValueError
+            If there is no such method, or the road does not suit it.
         SolveError
             If the case has no meaningful answer.
         """
+        _require_method(method, (MOVING_FRF, *COUPLED_BY), "a vehicle")
         journey = self.journey
-        result = simulate(
-            self.guideway,
-            self.vehicle,
-            self.road.profile,
-            speed=journey.speed,
-            duration=journey.duration,
-            start=journey.start,
-            time_step=journey.time_step,
-            truncation=journey.truncation,
-            blend=journey.blend,
-            progress=progress,
-        )
+        if method in COUPLED_BY:
+            result = coupled(
+                (self.guideway, self.vehicle, self.road.profile),
+                journey,
+                Division(element=elements(self.guideway)[-1]),
+                iteration=COUPLED_BY[method],
+                progress=progress,
+            )()
+        else:
+            result = simulate(
+                require_endless(self.guideway, instead="cdfm"),
+                self.vehicle,
+                self.road.profile,
+                speed=journey.speed,
+                duration=journey.duration,
+                start=journey.start,
+                time_step=journey.time_step,
+                truncation=journey.truncation,
+                blend=journey.blend,
+                progress=progress,
+            )
         spectrum = {} if self.road.spectrum is None else {"spectrum": str(self.road.spectrum)}
         return result.assign_attrs(road=self.road.description, **spectrum)
 
@@ -139,26 +164,40 @@ class Passage:
         """Forces at the steps of the journey, shape (time, load) [N]."""
         return self.loads.at(self.journey.times)
 
-    def run(self, progress: Progress = silent) -> xr.Dataset:
+    def run(self, progress: Progress = silent, method: str = MOVING_FRF) -> xr.Dataset:
         """Compute the response.
 
         Parameters
         ----------
         progress : callable
             Called with the name of a stage and the fraction of it that is done.
+        method : str
+            `moving-frf`, or `newmark`, which steps through time: on a finite road as it is, otherwise on a stretch
+            that is cut out of an endless track.
 
         Returns
         -------
         xarray.Dataset
-            What `moving_loads` returns.
+            What `moving_loads` or `newmark_loads` returns.
 
         Raises
         ------
+        ValueError
+            If there is no such method, or the road does not suit it.
         SolveError
             If the case has no meaningful answer.
         """
+        _require_method(method, (MOVING_FRF, NEWMARK), "prescribed loads")
+        if method == NEWMARK:
+            return loaded(
+                self.guideway,
+                (self.forces, self.loads.positions, self.loads.observe),
+                self.journey,
+                Division(element=elements(self.guideway)[-1]),
+                progress=progress,
+            )()
         return moving_loads(
-            self.guideway,
+            require_endless(self.guideway, instead=NEWMARK),
             self.forces,
             self.loads.positions,
             speed=self.journey.speed,
@@ -196,29 +235,40 @@ class Scenario:
         return self.case.guideway
 
     @property
+    def endless(self) -> Guideway | None:
+        """The same where it is endless and so has moving FRFs; None: it is a finite road."""
+        return None if isinstance(self.guideway, FiniteGuideway) else self.guideway
+
+    @property
     def journey(self) -> Journey:
         """Speed, duration, steps."""
         return self.case.journey
 
-    def run(self, progress: Progress = silent) -> xr.Dataset:
+    def run(self, progress: Progress = silent, method: str = MOVING_FRF) -> xr.Dataset:
         """Compute the response.
 
         Parameters
         ----------
         progress : callable
             Called with the name of a stage and the fraction of it that is done.
+        method : str
+            `moving-frf`; `cdfm` or `sim` with a vehicle, `newmark` with prescribed loads, on a finite road one of
+            these.
 
         Returns
         -------
         xarray.Dataset
-            What `simulate` or `moving_loads` returns, with the scenario's text in its attributes.
+            What `simulate`, `moving_loads`, `cdfm`, `sim` or `newmark_loads` returns, with the scenario's text in
+            its attributes.
 
         Raises
         ------
+        ValueError
+            If there is no such method, or the road does not suit it.
         SolveError
             If the case has no meaningful answer.
         """
-        return self.case.run(progress).assign_attrs(scenario=self.text)
+        return self.case.run(progress, method).assign_attrs(scenario=self.text)
 
 
 def shortened(scenario: Scenario, duration: float) -> Scenario:
@@ -284,3 +334,9 @@ def passage_of(scenario: Scenario) -> Passage:
     if isinstance(scenario.case, Passage):
         return scenario.case
     raise ValueError(f"{scenario.name}: a scenario with prescribed loads is wanted, it has a vehicle")
+
+
+def _require_method(method: str, known: tuple[str, ...], what: str) -> None:
+    if method not in known:
+        hint = "" if method in (*COUPLED_BY, NEWMARK) else nearest(str(method), known)
+        raise ValueError(f"method must be one of {', '.join(known)} with {what}, got {shown(method)}{hint}")

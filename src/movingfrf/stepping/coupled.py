@@ -360,19 +360,23 @@ def prepared_journey(
         else:
             force += vehicle.static_loads - steady.load
             motion -= steady.motion
-        name = "separate iterative method (SIM)" if iteration.tolerance else "coupled method (CDFM)"
+        method, name = (
+            ("sim", "separate iterative method (SIM)") if iteration.tolerance else ("cdfm", "coupled method (CDFM)")
+        )
         attributes: dict[str, str | float | int] = {
             "title": f"Coupled response of a vehicle and a finite road: {name}",
             "movingfrf": VERSION,
+            "method": method,
             "speed": float(journey.speed),
             "duration": float(journey.duration),
             "start": float(journey.start),
             "time_step": float(journey.time_step),
             "blend": float(journey.blend),
             "datum": excitation.datum,
+            "run_in": float(run_in),
+            "superposed": int(superposed),
             "scheme": repr(row),
-            "road_dofs": guideway.dofs,
-            "road_spacing": float(guideway.spacing),
+            **guideway.attributes,
             "iterations": trace.iterations,
             "findings": find.announced(
                 [*steady.findings, *find.contact_lost(force + steady.load, journey.time_step)]

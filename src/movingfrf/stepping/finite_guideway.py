@@ -64,6 +64,8 @@ class FiniteGuideway:
         accompanies.
     column : int
         Set by the same: unknowns per element along the road, by which the state of a road that travels moves back.
+    finer : callable, optional
+        Set by the same: gives the same road with so many elements in place of each, in every direction.
 
     Raises
     ------
@@ -92,6 +94,7 @@ class FiniteGuideway:
     mesh: Mesh | None = None
     travels: bool = False
     column: int = 0
+    finer: Callable[[int], FiniteGuideway] | None = None
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -124,6 +127,17 @@ class FiniteGuideway:
     def dofs(self) -> int:
         """Number of unknowns."""
         return int(self.mass.shape[0])
+
+    @property
+    def attributes(self) -> dict[str, float | int]:
+        """What a result says about the road that it was stepped on."""
+        return {
+            "road_dofs": self.dofs,
+            "road_spacing": float(self.spacing),
+            "road_first": float(self.interval[0]),
+            "road_last": float(self.interval[1]),
+            "road_travels": int(self.travels),
+        }
 
     def rows(self, positions: FloatArray, derivative: int = 0, across: ArrayLike = 0.0) -> sparse.csr_array:
         """Rows that interpolate the deflection, or its slope along the road, shape (position, dof).

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -199,7 +200,26 @@ def finite_plate(
         width=float(width),
         travels=travels,
         column=NODAL * (count[1] + 1),
+        finer=partial(
+            _finer,
+            float(size[0]),
+            count_across,
+            track=track,
+            width=width,
+            first=first,
+            last=last,
+            poisson=poisson,
+            transverse=transverse,
+            ends=ends,
+            absorbing=length,
+            band=band,
+            travels=travels,
+        ),
     )
+
+
+def _finer(element: float, across: int, parts: int, **others: Any) -> FiniteGuideway:
+    return finite_plate(element=element / parts, across=across * parts, **others)
 
 
 def struck_plate(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from numbers import Real
 from typing import Any, NamedTuple
 
@@ -205,7 +206,22 @@ def finite_track(
         mesh=mesh,
         travels=travels,
         column=2 * len(layers.masses),
+        finer=partial(
+            _finer,
+            element,
+            track=track,
+            first=first,
+            last=last,
+            ends=ends,
+            absorbing=length,
+            band=band,
+            travels=travels,
+        ),
     )
+
+
+def _finer(element: float, parts: int, **others: Any) -> FiniteGuideway:
+    return finite_track(element=element / parts, **others)
 
 
 def require_stretch(

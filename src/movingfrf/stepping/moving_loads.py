@@ -132,12 +132,12 @@ def newmark_loads(
     attributes: dict[str, str | float | int] = {
         "title": "Response of a finite road to prescribed moving loads: Newmark's method",
         "movingfrf": VERSION,
+        "method": "newmark",
         "speed": float(speed),
         "time_step": float(time_step),
         "start": float(start),
         "scheme": repr(row),
-        "road_dofs": road.dofs,
-        "road_spacing": float(road.spacing),
+        **road.attributes,
         "findings": "[]",
     }
     return labelled(values, LOADED, attributes)

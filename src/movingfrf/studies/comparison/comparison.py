@@ -27,6 +27,7 @@ from movingfrf._basics.checks import ValidityWarning
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Drive, Scenario, shortened
+from movingfrf.scenarios.stepped import elements
 from movingfrf.studies.comparison.convergence import (
     TARGETS,
     Reference,
@@ -35,7 +36,7 @@ from movingfrf.studies.comparison.convergence import (
     maximum_error,
     relative_l2,
 )
-from movingfrf.studies.comparison.methods import FOR_LOADS, FOR_VEHICLE, Case, Method, chosen, elements
+from movingfrf.studies.comparison.methods import FOR_LOADS, FOR_VEHICLE, Case, Method, chosen
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -151,8 +152,8 @@ def compare(
         If the case has no meaningful answer.
     """
     compared = chosen(scenario, methods)
-    own = Case(scenario=scenario, time_step=scenario.journey.time_step, element=elements(scenario)[-1])
-    for case in (own, replace(own, element=elements(scenario)[0])):
+    own = Case(scenario=scenario, time_step=scenario.journey.time_step, element=elements(scenario.guideway)[-1])
+    for case in (own, replace(own, element=elements(scenario.guideway)[0])):
         case.finite(travels=True)  # refuses what cannot be divided before anything long begins
     with threadpool_limits(limits=1), _quiet():
         # Whatever a method refuses it refuses here, before anything long begins.
@@ -241,7 +242,7 @@ def _curve(
     runs = [
         (name, replace(case, time_step=step, element=element))
         for name, method in methods.items()
-        for element in (elements(case.scenario) if method.divides else [case.element])
+        for element in (elements(case.scenario.guideway) if method.divides else [case.element])
         for step in steps
     ]
     points = []

@@ -12,8 +12,11 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
+from movingfrf.guideways.guideway import Guideway
 from movingfrf.scenarios.scenario import Drive, Scenario
-from movingfrf.studies.comparison.methods import DISCRETISATION, Case, elements, newmark, stepped
+from movingfrf.scenarios.stepped import DISCRETISATION, elements
+from movingfrf.stepping.finite_guideway import FiniteGuideway
+from movingfrf.studies.comparison.methods import Case, newmark, stepped
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,6 +34,9 @@ class Refinement:
     enough: float = 5e-6
     hopeless: float = 5e-2  # movement at which it is none [a convention]
     levels: int = 4  # how often step and elements are halved at most [4 to 5; after 3 it still moves by 2e-5]
+    # The same of a finite plate, where each costs some twenty times as much as the last [2 to 3: it takes two to
+    # see the answer move].
+    levels_across: int = 2
     # Where no longer stretch at either side is tried, in lengths over which the road bends [100 to 400].
     farthest: float = 200.0
     unseen: float = 0.2  # share of the least target that the ends of a compared road may add [0.05 to 0.5]
@@ -49,7 +55,8 @@ class Reference(NamedTuple):
     movement: dict[str, float]
     finest_step: float
     finest_element: float
-    around: float  # road at each side that the compared errors do not see, in lengths over which it bends
+    # Road at each side that the compared errors do not see, in lengths over which it bends; nan of a finite road.
+    around: float
 
 
 def quantities(result: xr.Dataset, scenario: Scenario) -> Quantities:
@@ -66,14 +73,21 @@ def quantities(result: xr.Dataset, scenario: Scenario) -> Quantities:
     -------
     dict of str to ndarray
         Dynamic contact force [N], deflection without the sag [m], acceleration of the degrees of freedom that touch
-        the road [m/s²]; the deflection alone under prescribed loads.
+        the road [m/s²]; the deflection alone under prescribed loads. On a finite road, on which nothing is steady,
+        the contact force is that without the weight, and the deflection is the whole.
     """
     if not isinstance(scenario.case, Drive):
         return {"deflection": result.deflection.values}
-    wheels = np.flatnonzero(np.abs(np.asarray(scenario.case.vehicle.contact_map)).any(axis=0))
+    vehicle = scenario.case.vehicle
+    wheels = np.flatnonzero(np.abs(np.asarray(vehicle.contact_map)).any(axis=0))
+    force, deflection = result.contact_force.values, result.deflection.values
+    if isinstance(scenario.guideway, FiniteGuideway):
+        force = force + (result.static_load.values - vehicle.static_loads)
+    else:
+        deflection = deflection - result.static_deflection.values
     return {
-        "contact_force": result.contact_force.values,
-        "deflection": result.deflection.values - result.static_deflection.values,
+        "contact_force": force,
+        "deflection": deflection,
         "wheel_acceleration": result.acceleration.values[:, wheels],
     }
 
@@ -81,7 +95,8 @@ def quantities(result: xr.Dataset, scenario: Scenario) -> Quantities:
 def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
     """Lengthen the road, then refine mesh and step together, until the extrapolated answer no longer moves.
 
-    Errors fall with the square of the step, or faster, so that (4 fine − coarse)/3 is the better answer.
+    A finite road stays as long as it is, and one that is given by its matrices as fine as it is. Errors fall with
+    the square of the step, or faster, so that (4 fine − coarse)/3 is the better answer.
 
     Parameters
     ----------
@@ -100,7 +115,9 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
     SolveError
         If the answer does not converge.
     """
-    step, element = scenario.journey.time_step, elements(scenario)[0]
+    guideway = scenario.guideway
+    endless = not isinstance(guideway, FiniteGuideway)
+    step, element = scenario.journey.time_step, elements(guideway)[0]
     prepare = stepped if isinstance(scenario.case, Drive) else newmark
 
     def solved(level: int, around: float) -> Quantities:
@@ -109,12 +126,13 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
         def told(stage: str, fraction: float) -> None:
             progress(f"converged answer, refinement {level}, {stage}", fraction)
 
-        result = prepare(case, travels=True, progress=told)()
+        result = prepare(case, travels=endless, progress=told)()
         return {name: values[:: 2**level].copy() for name, values in quantities(result, scenario).items()}
 
     # First the length of the road, coarsely: what comes back from its ends changes the answer like a mesh error.
-    around, coarse, enough = DISCRETISATION.around, solved(0, DISCRETISATION.around), math.nan
-    while True:
+    around, enough, from_ends = DISCRETISATION.around, math.nan, dict[str, float]()
+    coarse = solved(0, around)
+    while endless:
         wider = solved(0, 2 * around)
         from_ends = relative_l2(coarse, wider)
         if math.isnan(enough) and next(iter(from_ends.values())) <= REFINEMENT.unseen * min(TARGETS):
@@ -124,7 +142,8 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
         around, coarse = 2 * around, wider
     answers: list[Quantities] = []
     movement: dict[str, float] = {}
-    for level in range(1, REFINEMENT.levels + 1):
+    plate = isinstance(guideway, FiniteGuideway) and guideway.width > 0
+    for level in range(1, 1 + (REFINEMENT.levels_across if plate else REFINEMENT.levels)):
         fine = solved(level, around)
         answers.append({name: (4 * fine[name] - coarse[name]) / 3 for name in fine})
         coarse = fine
@@ -132,15 +151,32 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
             movement = relative_l2(answers[-2], answers[-1])
             if max(movement.values()) <= REFINEMENT.enough:
                 break
-    movement = {name: max(moved, from_ends[name]) for name, moved in movement.items()}
+    movement = {name: max(moved, from_ends.get(name, 0.0)) for name, moved in movement.items()}
     if not min(movement.values()) <= REFINEMENT.hopeless:
         raise SolveError(
             f"the answer from the time domain does not converge: it still moves by {min(movement.values()):.1e} "
-            f"when step and elements are halved for the last time, to {step / 2**level:.3g} s; the scenario's "
+            f"at the last halving of {refined(guideway)}, to {step / 2**level:.3g} s; the scenario's "
             f"time_step, {step:g} s, is too long, or its loads begin or end too abruptly"
         )
-    enough = around if math.isnan(enough) else enough
+    enough = around if endless and math.isnan(enough) else enough
     return Reference(answers[-1], step, movement, step / 2**level, element / 2**level, enough)
+
+
+def refined(guideway: Guideway | FiniteGuideway) -> str:
+    """Say what is halved, again and again, on the way to the converged answer.
+
+    Parameters
+    ----------
+    guideway : Guideway or FiniteGuideway
+        The road; one that is given by its matrices is as fine as it is.
+
+    Returns
+    -------
+    str
+        Step and elements, or the step alone.
+    """
+    given = isinstance(guideway, FiniteGuideway) and guideway.finer is None
+    return "the step alone" if given else "step and elements"
 
 
 def relative_l2(found: Quantities, wanted: Quantities) -> dict[str, float]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from movingfrf._basics.arrays import finite
 from movingfrf.studies.comparison.comparison import Comparison, ratios
+from movingfrf.studies.comparison.convergence import refined
 
 
 def as_json(comparison: Comparison) -> str:
@@ -49,6 +50,7 @@ def convergence_as_json(comparison: Comparison) -> str:
             "movement_relative_l2": reference.movement,
             "finest_time_step": reference.finest_step,
             "finest_element": reference.finest_element,
+            "halved": refined(comparison.scenario.guideway),
         },
         "error_over_time": [point._asdict() for point in comparison.curve],
         "seconds_at_equal_error": {f"{target:g}": times for target, times in comparison.equal_error.items()},

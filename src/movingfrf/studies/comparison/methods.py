@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import nearest
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.guideways.beams import EulerBernoulliBeam
 from movingfrf.guideways.foundations import OnMass
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import Track
@@ -20,41 +19,23 @@ from movingfrf.response.moving_loads import moving_loads
 from movingfrf.response.simulation import simulate
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.scenario import Drive, Passage, Scenario, drive_of, passage_of
-from movingfrf.stepping.coupled import prepared_journey
+from movingfrf.scenarios.stepped import (
+    DISCRETISATION,
+    EXCHANGED,
+    Division,
+    Solve,
+    coupled,
+    divisible,
+    loaded,
+    run_in_of,
+    stretch,
+)
 from movingfrf.stepping.duhamel import duhamel, duhamel_loads
 from movingfrf.stepping.exchange import SOLVED, Iteration, numba_is_there
 from movingfrf.stepping.finite_guideway import FiniteGuideway
-from movingfrf.stepping.finite_track import bending_length, finite_track
 from movingfrf.stepping.impulse import CANCELLING, struck_track
-from movingfrf.stepping.moving_loads import newmark_loads
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-
-Solve = Callable[[], "xr.Dataset"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Discretisation:
-    """How the endless road becomes one that can be stepped; in brackets, between what each number is safe.
-
-    Lengths are multiples of the one over which the road bends, (4 EI/k)^¼.
-    """
-
-    # Road in front of and behind the vehicle; a comparison doubles it until its ends are not seen [10 to 56].
-    around: float = 14.0
-    absorbing: float = 0.6  # share of it that absorbs [0.4 to 0.8]
-    # Elements that are tried, rounded, the longest first [0.1 to 0.3: longer ones do not carry the waves at 70 Hz].
-    elements: tuple[float, ...] = (0.3, 0.15)
-    # Time for which weights travel over the smooth road before a record begins [s] [1 to 4; from 2 where a
-    # foundation has a tenth of a pavement's damping].
-    run_in: float = 1.0
-
-
-DISCRETISATION = Discretisation()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -113,24 +94,19 @@ class Case:
         how = {"speed": journey.speed, "time_step": journey.time_step, "observe": loads.observe}
         return (loads.at(journey.times), loads.positions), how
 
-    def finite(self, *, travels: bool) -> FiniteGuideway:
-        """Cut out of the track what the journey needs: all of it, or what travels along."""
-        around = self.around * bending_length(self.track)
-        first, last = self.places.min() - around, self.places.max() + around
-        if not travels:
-            journey = self.journey
-            before = DISCRETISATION.run_in * journey.speed if isinstance(self.scenario.case, Drive) else 0.0
-            first += journey.start - before
-            last += journey.start + journey.speed * journey.time_step * journey.samples
-        # Nodes at multiples of the element, wherever the track ends: its length must not change the mesh.
-        return finite_track(
-            self.track,
-            first=math.floor(first / self.element) * self.element,
-            last=math.ceil(last / self.element) * self.element,
-            element=self.element,
-            absorbing=DISCRETISATION.absorbing * around,
-            travels=travels,
-        )
+    @property
+    def run_in(self) -> float:
+        """Time for which the weight travels before the record [s]: the same whatever this case's step."""
+        return run_in_of(self.scenario.guideway, self.scenario.case.sources, self.scenario.journey)
+
+    def division(self, *, travels: bool = False) -> Division:
+        """Say how this case divides a road into elements."""
+        return Division(element=self.element, around=self.around, travels=travels)
+
+    def finite(self, *, travels: bool = False) -> FiniteGuideway:
+        """Give the road that this case steps on: all that the journey needs, or what travels along."""
+        before = self.run_in if isinstance(self.scenario.case, Drive) else 0.0
+        return stretch(self.scenario.guideway, self.places, self.journey, self.division(travels=travels), before)
 
 
 def _transformed(case: Case, guideway: Guideway) -> Solve:
@@ -180,14 +156,14 @@ def stepped(
     iteration: Iteration = SOLVED,
     progress: Progress = silent,
 ) -> Solve:
-    """Step vehicle and road; the weight in a run of its own, since the road is the same everywhere."""
-    parts, _ = case.driven()
-    return prepared_journey(
+    """Step vehicle and road; where the road is the same everywhere the weight has a run of its own."""
+    return coupled(
+        (case.scenario.guideway, *case.driven()[0]),
         case.journey,
-        (case.finite(travels=travels), *parts),
-        iteration=iteration,
+        case.division(travels=travels),
         superposed=superposed,
-        run_in=DISCRETISATION.run_in,
+        run_in=case.run_in,
+        iteration=iteration,
         progress=progress,
     )
 
@@ -205,14 +181,14 @@ def _cdfm_weight(case: Case) -> Solve:
 
 
 def _sim(case: Case) -> Solve:
-    return stepped(case, iteration=Iteration(1e-10))
+    return stepped(case, iteration=EXCHANGED)
 
 
 def newmark(case: Case, *, travels: bool = False, progress: Progress = silent) -> Solve:
     """Step the road under prescribed loads."""
-    finite = case.finite(travels=travels)
-    given, how = case.loaded()
-    return lambda: newmark_loads(finite, *given, progress=progress, **how)
+    passage = passage_of(case.scenario)
+    forces = (passage.loads.at(case.journey.times), passage.loads.positions, passage.loads.observe)
+    return loaded(passage.guideway, forces, case.journey, case.division(travels=travels), progress=progress)
 
 
 def _newmark_window(case: Case) -> Solve:
@@ -231,6 +207,8 @@ class Method:
         What the method does, in a few words.
     divides : bool
         Whether it divides the road of the journey into elements, whose length matters.
+    finite : bool
+        Whether it runs on a finite road as it is.
     strikes : bool
         Whether it strikes 40 m of road.
     usual : bool
@@ -242,6 +220,7 @@ class Method:
     prepare: Callable[[Case], Solve]
     words: str
     divides: bool = False
+    finite: bool = False
     strikes: bool = False
     usual: bool = False
     beside: str | None = None
@@ -265,15 +244,25 @@ FOR_VEHICLE: dict[str, Method] = {
         usual=True,
     ),
     "cdfm": Method(
-        prepare=_cdfm, words="coupled method, the whole road", divides=True, usual=True, beside="cdfm-window"
+        prepare=_cdfm,
+        words="coupled method, the whole road",
+        divides=True,
+        finite=True,
+        usual=True,
+        beside="cdfm-window",
     ),
     "cdfm-window": Method(
         prepare=_cdfm_window, words="coupled method, a stretch of road that travels along", divides=True
     ),
     "cdfm-weight": Method(
-        prepare=_cdfm_weight, words="coupled method, the whole road, the weight stepped as well", divides=True
+        prepare=_cdfm_weight,
+        words="coupled method, the whole road, the weight stepped as well",
+        divides=True,
+        finite=True,
     ),
-    "sim": Method(prepare=_sim, words="separate iterative method, the whole road", divides=True, usual=True),
+    "sim": Method(
+        prepare=_sim, words="separate iterative method, the whole road", divides=True, finite=True, usual=True
+    ),
 }
 FOR_LOADS: dict[str, Method] = {
     **{name: FOR_VEHICLE[name] for name in ("moving-frf", "moving-frf-fe", "moving-frf-fe-plain", "duhamel")},
@@ -281,6 +270,7 @@ FOR_LOADS: dict[str, Method] = {
         prepare=newmark,
         words="Newmark's method, the whole road",
         divides=True,
+        finite=True,
         usual=True,
         beside="newmark-window",
     ),
@@ -308,17 +298,15 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
     Raises
     ------
     ValueError
-        If a method is unknown or does not suit the scenario, or the guideway cannot be divided into elements.
+        If a method is unknown or does not suit the scenario or its road, or the guideway cannot be divided into
+        elements.
     """
     with_vehicle = isinstance(scenario.case, Drive)
     known, others = (FOR_VEHICLE, FOR_LOADS) if with_vehicle else (FOR_LOADS, FOR_VEHICLE)
     guideway = scenario.guideway
-    if not isinstance(guideway, Track) or not isinstance(guideway.beam, EulerBernoulliBeam):
-        kind = type(guideway.beam if isinstance(guideway, Track) else guideway).__name__
-        raise ValueError(
-            "guideway must be a track with an Euler–Bernoulli beam, since all methods but the first divide it into "
-            f"finite elements, got a {kind}"
-        )
+    ends = isinstance(guideway, FiniteGuideway)
+    if not ends:
+        divisible(guideway)
     if isinstance(scenario.case, Drive) and np.isinf(scenario.case.vehicle.springs).any():
         raise ValueError(
             "the vehicle has rigid contacts (stiffness = inf), which only the moving FRF knows, so there is "
@@ -327,7 +315,8 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
         )
     # 40 m of road have no room for a vehicle longer than 16 m: what strikes them is then not among the usual ones.
     long = with_vehicle and np.ptp(scenario.case.sources) > 16.0
-    usual = [name for name, method in known.items() if method.usual and not (long and method.strikes)]
+    suited = {name: method for name, method in known.items() if method.finite or not ends}
+    usual = [name for name, method in suited.items() if method.usual and not (long and method.strikes)]
     wanted = usual if names is None else list(names)
     unknown = [name for name in wanted if name not in known]
     if unknown or not wanted:
@@ -336,34 +325,18 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
         raise ValueError(
             f"methods for a scenario with {what} are {', '.join(known)}; got {', '.join(unknown) or 'none'}{hint}"
         )
-    shown = [other for name in wanted for other in (name, known[name].beside or name)]
+    unsuited = [name for name in wanted if name not in suited]
+    if unsuited:
+        raise ValueError(
+            f"{', '.join(unsuited)}: for roads that are endless and the same everywhere, out of which a moving FRF "
+            f"or a stretch that travels along is taken; on a finite road {', '.join(suited)} can be compared"
+        )
+    shown = [other for name in wanted for other in (name, known[name].beside or name) if other in suited]
     return {name: known[name] for name in dict.fromkeys(shown)}
 
 
-def compiles(guideway: Guideway) -> bool:
-    """Tell whether steps on this guideway are compiled: numba is there and the foundation has no mass."""
+def compiles(guideway: Guideway | FiniteGuideway) -> bool:
+    """Tell whether steps on this guideway are compiled: numba is there, the road a chain without layers of mass."""
+    if isinstance(guideway, FiniteGuideway):
+        return numba_is_there() and guideway.mesh is not None and guideway.column == 2
     return numba_is_there() and isinstance(guideway, Track) and not isinstance(guideway.foundation, OnMass)
-
-
-def elements(scenario: Scenario) -> list[float]:
-    """Choose lengths of elements to try: round numbers near shares of the length over which the track bends.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        The case.
-
-    Returns
-    -------
-    list of float
-        Lengths [m], descending.
-    """
-    assert isinstance(scenario.guideway, Track)
-    length = bending_length(scenario.guideway)
-    return [_rounded(share * length) for share in DISCRETISATION.elements]
-
-
-def _rounded(value: float) -> float:
-    """Round down to 1, 2 or 5 times a power of ten, or a quarter of that."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return max(step * power for step in (0.5, 1.0, 1.25, 2.0, 2.5, 5.0) if step * power <= value * (1 + 1e-9))

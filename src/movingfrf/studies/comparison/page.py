@@ -15,8 +15,9 @@ from movingfrf.reports.page import page
 from movingfrf.reports.tables import Column, Row, Setting, Table
 from movingfrf.scenarios.scenario import Drive
 from movingfrf.stepping.exchange import numba_is_there
+from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
-from movingfrf.studies.comparison.convergence import TARGETS
+from movingfrf.studies.comparison.convergence import TARGETS, refined
 from movingfrf.studies.comparison.methods import FOR_LOADS, FOR_VEHICLE, compiles
 
 if TYPE_CHECKING:
@@ -115,8 +116,9 @@ def _settings(comparison: Comparison) -> list[Setting]:
         Setting("Steps", "compiled by numba" if compiles(comparison.scenario.guideway) else "NumPy and LAPACK"),
         Setting(
             "Converged answer",
-            f"{plain(1e3 * reference.finest_step)} ms, {plain(reference.finest_element)} m",
-            "finest step and elements, extrapolated",
+            f"{plain(1e3 * reference.finest_step)} ms"
+            + ("" if math.isnan(reference.finest_element) else f", {plain(reference.finest_element)} m"),
+            f"at the last halving of {refined(comparison.scenario.guideway)}, extrapolated",
         ),
     ]
 
@@ -150,7 +152,7 @@ def findings(comparison: Comparison) -> list[str]:
             "The steps of cdfm, sim and newmark are taken in NumPy and LAPACK, some forty times more slowly than "
             "compiled ones: "
             + (
-                "the compiled loops take roads without layers of mass only."
+                "the compiled loops take roads of beam elements without layers of mass only."
                 if numba_is_there()
                 else "numba is not installed (pip install movingfrf[fast])."
             )
@@ -171,8 +173,10 @@ def _time_table(comparison: Comparison) -> Table:
         Column("set-up", "s"),
         Column("solving", "s"),
         Column("peak memory", "MiB"),
-        Column("time over moving-frf", ""),
     ]
+    beside = "moving-frf" in _methods(comparison)
+    if beside:
+        columns.append(Column("time over moving-frf", ""))
     colours = _colours(comparison)
     rows = []
     for row in comparison.rows:
@@ -182,7 +186,7 @@ def _time_table(comparison: Comparison) -> Table:
             number(row.setup_s, 3),
             number(row.solve_s, 3),
             number(row.peak_bytes / 2**20, 3) if row.peak_bytes else "–",
-            _cell(row.ratio, _three),
+            *([_cell(row.ratio, _three)] if beside else []),
         ]
         rows.append(Row(row.method, cells, colours[row.method]))
     words = "Times (medians) and memory (peak of all arrays) at the scenario's own step."
@@ -220,10 +224,14 @@ def _equal_error_table(comparison: Comparison) -> Table:
     columns: list[Column] = []
     cells: dict[str, list[str]] = {name: [] for name in _methods(comparison)}
     for target, times in comparison.equal_error.items():
-        columns += [Column(f"time to an error of {number(target, 1)}", "s"), Column("over moving-frf", "")]
-        over = ratios(comparison, target)
+        columns.append(Column(f"time to an error of {number(target, 1)}", "s"))
         for name, row in cells.items():
-            row += [_cell(x, _three) for x in (times[name], over[name])]
+            row.append(_cell(times[name], _three))
+        if "moving-frf" in cells:
+            columns.append(Column("over moving-frf", ""))
+            over = ratios(comparison, target)
+            for name, row in cells.items():
+                row.append(_cell(over[name], _three))
     colours = _colours(comparison)
     return Table(
         f"Time, set-up included, to equal error in {_name(comparison.main_quantity)}, read from the figure: the "
@@ -236,13 +244,19 @@ def _equal_error_table(comparison: Comparison) -> Table:
 
 def _reference_table(comparison: Comparison) -> Table:
     movement = comparison.reference.movement
+    longer = "" if _ends(comparison) else ", or when the road was made twice as long"
     return Table(
-        "The converged answer: its movement (relative L2, the worst channel) when mesh and step were halved last, "
-        "or the road made twice as long.",
+        "The converged answer: its movement (relative L2, the worst channel) at the last halving of "
+        f"{refined(comparison.scenario.guideway)}{longer}.",
         "quantity",
         [Column("movement", "")],
         [Row(_name(name), [number(value, 2)]) for name, value in movement.items()],
     )
+
+
+def _ends(comparison: Comparison) -> bool:
+    """Tell whether the road is finite."""
+    return isinstance(comparison.scenario.guideway, FiniteGuideway)
 
 
 def _methods(comparison: Comparison) -> list[str]:
@@ -327,7 +341,18 @@ def _method(comparison: Comparison) -> list[str]:
     lines = [f"{name}: {method.words}." for name, method in methods.items()]
     # With cdfm-weight the weight does not travel in a run of its own.
     stepped = [name for name, method in methods.items() if method.divides and name != "cdfm-weight"]
-    if stepped:
+    if _ends(comparison):
+        lines.append(
+            "The road is finite and stepped as it is, by average acceleration (Newmark), what is constant "
+            "factorised once."
+            + (
+                " It is not the same everywhere: the weight is always stepped along, and errors are those of the "
+                "contact force without the weight and of the whole deflection."
+                if isinstance(comparison.scenario.case, Drive)
+                else ""
+            )
+        )
+    elif stepped:
         lines.append(
             f"{', '.join(stepped)}: cubic Hermite elements, average acceleration (Newmark), what is constant "
             "factorised once, ends of the road absorbing. On a road that is the same everywhere the weight travels "
@@ -337,15 +362,16 @@ def _method(comparison: Comparison) -> list[str]:
             else f"{', '.join(stepped)}: cubic Hermite elements, average acceleration (Newmark), what is constant "
             "factorised once, ends of the road absorbing."
         )
+    same = "the same road" if _ends(comparison) else "a road that travels with the vehicle"
     return [
         *lines,
         "Every method gets the same cubic spline of the road's surface, with its rate of change ṙ = v r′, and "
         "includes the convective term v ∂w/∂x wherever a contact has a dashpot."
         if isinstance(comparison.scenario.case, Drive)
         else "Every method gets the same forces at its own steps.",
-        "The converged answer is computed by time stepping alone, on a road that travels with the vehicle: "
-        "elements and step are halved together and the answers extrapolated, (4 fine − coarse)/3, until the answer "
-        "moves by less than 5 × 10⁻⁶ or five levels are done.",
+        f"The converged answer is computed by time stepping alone, on {same}, by halving "
+        f"{refined(comparison.scenario.guideway)} and extrapolating the answers, (4 fine − coarse)/3, until these "
+        "move by less than 5 × 10⁻⁶ or the last level is done.",
         f"Times are medians of up to three runs on one thread, after a short run that is not timed; {main} decides "
         "times at equal error. Memory is the peak of all arrays, in a process of its own.",
     ]

@@ -10,11 +10,12 @@ from movingfrf._basics.wording import number
 from movingfrf.reports.tables import Column
 from movingfrf.response.simulation import spectral_grid
 from movingfrf.scenarios.scenario import drive_of
+from movingfrf.scenarios.stepped import elements
 from movingfrf.stepping.duhamel import duhamel_loads
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import CANCELLING, moving_impulse_response
 from movingfrf.studies.comparison.convergence import TARGETS
-from movingfrf.studies.comparison.methods import Case, elements
+from movingfrf.studies.comparison.methods import Case
 from movingfrf.studies.paper import operations
 from movingfrf.studies.paper.guideway import BAND
 from movingfrf.studies.paper.outcome import DataTable, Outcome, Statement, Verdict, verdict
@@ -93,7 +94,9 @@ def cheaper(study: Study) -> Outcome:
     equal = compared.equal_error
     journey, vehicle = compared.scenario.journey, drive_of(compared.scenario).vehicle
     grid = spectral_grid(journey, vehicle)
-    case = Case(scenario=compared.scenario, time_step=journey.time_step, element=elements(compared.scenario)[-1])
+    case = Case(
+        scenario=compared.scenario, time_step=journey.time_step, element=elements(compared.scenario.guideway)[-1]
+    )
     channels = 2 * len(vehicle.contacts) + 2 * len(vehicle.dof_names)
     counts = (
         operations.newmark_banded(case.finite(travels=False).dofs, journey.samples),

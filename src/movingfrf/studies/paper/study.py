@@ -27,12 +27,13 @@ from movingfrf.response.simulation import simulate
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Drive, Scenario, drive_of, passage_of, shortened
+from movingfrf.scenarios.stepped import elements
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.stepping.impulse import struck_track
 from movingfrf.stepping.moving_loads import newmark_loads
 from movingfrf.studies.comparison.comparison import Comparison, compare
-from movingfrf.studies.comparison.methods import FOR_VEHICLE, Case, elements
+from movingfrf.studies.comparison.methods import FOR_VEHICLE, Case
 from movingfrf.studies.paper.stated import STATED, SUBSTITUTES
 
 if TYPE_CHECKING:
@@ -221,7 +222,7 @@ class Study:
 
     def _stepped(self, method: str) -> xr.Dataset:
         case = scenario("truck")
-        of = Case(scenario=case, time_step=case.journey.time_step, element=elements(case)[-1])
+        of = Case(scenario=case, time_step=case.journey.time_step, element=elements(case.guideway)[-1])
         with quiet():
             return FOR_VEHICLE[method].prepare(of)()
 

@@ -14,8 +14,8 @@ from movingfrf.reports.curves import GREY, INK, PALETTE, readable
 from movingfrf.reports.tables import Column
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.spectra.iso import IsoRoad
+from movingfrf.scenarios.stepped import elements
 from movingfrf.studies.comparison.convergence import TARGETS
-from movingfrf.studies.comparison.methods import elements
 from movingfrf.studies.paper.drawing import STROKES, canvas, curve, legend_outside, logarithmic, title
 from movingfrf.studies.paper.outcome import AGREEMENT, DataTable, Outcome, Plot, Statement, Verdict, verdict
 from movingfrf.studies.paper.stated import STATED, SUBSTITUTES
@@ -180,7 +180,7 @@ def deflections(study: Study) -> Outcome:
             "dynamic_deflection_difference_closed_form": dynamic["exact"],
         },
         computed=[
-            f"CDFM: the whole road in elements of {elements(scenario('truck'))[-1]:g} m, Newmark's method "
+            f"CDFM: the whole road in elements of {elements(scenario('truck').guideway)[-1]:g} m, Newmark's method "
             "(average acceleration), 1 ms. The convective term v ∂w/∂x is included in the dashpots of the tyres. "
             "Both see the same spline of the road.",
         ],
