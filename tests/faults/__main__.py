@@ -65,6 +65,7 @@ REPORTS = [
 # These where it lies in what a user writes.
 SCENARIOS = [
     "tests/test_scenario.py",
+    "tests/test_schema.py",
     "tests/test_roads.py",
     "tests/test_vehicle_scenarios.py",
     "tests/test_finite_scenarios.py",
@@ -117,7 +118,7 @@ def outcome(fault: Fault | None) -> tuple[int, str]:
     """Run the tests against a copy, with a fault or without: exit status and the first test that failed."""
     with tempfile.TemporaryDirectory(prefix="movingfrf-fault-") as folder:
         copy = Path(folder).resolve()
-        for part in ("src", "tests", "docs"):
+        for part in ("src", "tests", "docs", "examples"):
             shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
         shutil.copy(ROOT / "pyproject.toml", copy)
         if fault:

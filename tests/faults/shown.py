@@ -16,6 +16,9 @@ FAULTS = [
     Fault("key that may be left out", "scenarios/kind.py", "=_without_none(", "=("),
     Fault("unit of the neighbour", "scenarios/kind.py", "[{units[place]}", "[{units[0]}"),
     Fault("part of a road for no journey", "scenarios/reading.py", "key.item == family.makes", "False"),
+    Fault("kind that need not be said", "scenarios/schema.py", "kind.name != family.default else []", "0 else []"),
+    Fault("infinity that is a mistake", "scenarios/schema.py", '["number", "null"]', '"number"'),
+    Fault("list of no tables", "scenarios/schema.py", '{"minItems": 1}', "{}"),
     # A scenario stepped through time.
     Fault(
         "weight of its own on a bridge",

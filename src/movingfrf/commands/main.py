@@ -9,13 +9,14 @@ import sys
 from cyclopts import CycloptsError
 
 from movingfrf._basics.checks import SolveError
-from movingfrf.commands import profiles, scenarios, studies
+from movingfrf.commands import profiles, scenarios, schema, studies
 from movingfrf.commands.root import Status, app
 
 # In the order in which messages list them.
 COMMANDS = (
     scenarios.new,
     scenarios.check,
+    schema.schema,
     scenarios.vehicles,
     scenarios.run,
     scenarios.random,
