@@ -208,6 +208,7 @@ def random(
         from movingfrf.results.files import replacing, save, summary_as_json
         from movingfrf.scenarios.reading import read_scenario
         from movingfrf.scenarios.scenario import Drive
+        from movingfrf.scenarios.stepped import require_endless
 
         scenario = read_scenario(file)
         drive = scenario.case
@@ -226,7 +227,7 @@ def random(
             warnings.simplefilter("ignore", ValidityWarning)
             response = partial(
                 random_response,
-                drive.guideway,
+                require_endless(drive.guideway, instead="cdfm"),
                 drive.vehicle,
                 road.spectrum,
                 speed=drive.journey.speed,

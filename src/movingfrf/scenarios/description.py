@@ -16,7 +16,8 @@ from movingfrf.response.system import joined, steady_state
 from movingfrf.results.findings import near_critical
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
-from movingfrf.scenarios.scenario import Drive, Passage, Scenario
+from movingfrf.scenarios.scenario import COUPLED_BY, NEWMARK, Drive, Passage, Scenario
+from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.modes import Mode, vehicle_modes
 from movingfrf.vehicles.vehicle import Vehicle
@@ -53,7 +54,7 @@ def described(scenario: Scenario) -> list[Section]:
     match scenario.case:
         case Drive() as drive:
             vehicle, _, vibrations = described_vehicle(drive.vehicle)
-            sections += [vehicle, ("Contacts in steady travel", _steady_contacts(drive)), vibrations]
+            sections += [vehicle, _steady_contacts(drive), vibrations]
             sections.append(("Roughness", _roughness(drive.road)))
         case Passage() as passage:
             sections.append(("Loads", _loads(passage)))
@@ -73,8 +74,10 @@ def remarks(scenario: Scenario) -> list[str]:
     list of str
         Sentences; empty if there is nothing to remark.
     """
-    critical_speed = float(scenario.guideway.critical_speed)
-    found = [finding.message for finding in near_critical(scenario.journey.speed, critical_speed)]
+    guideway, found = scenario.endless, []
+    if guideway is not None:
+        near = near_critical(scenario.journey.speed, float(guideway.critical_speed))
+        found += [finding.message for finding in near]
     if isinstance(scenario.case, Drive):
         found += _remarks_on_vehicle(scenario.case.vehicle, scenario.journey)
     return found
@@ -101,6 +104,8 @@ def _remarks_on_vehicle(vehicle: Vehicle, journey: Journey) -> list[str]:
 
 
 def _guideway(scenario: Scenario) -> list[tuple[str, str]]:
+    if isinstance(scenario.guideway, FiniteGuideway):
+        return _finite(scenario.guideway)
     critical, speed = scenario.guideway.critical_speed, scenario.journey.speed
     share = "" if np.isinf(critical) else f", of which the speed is {speed / critical:.3g}"
     return [
@@ -109,10 +114,26 @@ def _guideway(scenario: Scenario) -> list[tuple[str, str]]:
     ]
 
 
-def _steady_contacts(drive: Drive) -> list[tuple[str, str]]:
+def _finite(road: FiniteGuideway) -> list[tuple[str, str]]:
+    first, last = road.interval
+    lines = [
+        ("kind", "finite road, not the same everywhere: no moving FRF, no critical speed"),
+        ("length", f"{last - first:g} m, from {first:g} m to {last:g} m" + (", travels along" * road.travels)),
+    ]
+    if road.width:
+        lines.append(("width", f"{road.width:g} m"))
+    if road.spacing:
+        lines.append(("elements", f"{round((last - first) / road.spacing)} along, of {road.spacing:g} m"))
+    return [*lines, ("unknowns", f"{road.dofs}")]
+
+
+def _steady_contacts(drive: Drive) -> Section:
+    """Describe contacts in steady travel; on a finite road, where nothing is steady, at rest."""
+    if isinstance(drive.guideway, FiniteGuideway):
+        return "Contacts at rest", _contacts(drive.vehicle, drive.vehicle.static_loads)
     system = joined(drive.guideway, drive.vehicle, drive.journey.speed)
     steady = steady_state(system, system.sample(np.zeros(1, complex)))
-    return _contacts(drive.vehicle, steady.load, steady.deflection)
+    return "Contacts in steady travel", _contacts(drive.vehicle, steady.load, steady.deflection)
 
 
 def described_vehicle(vehicle: Vehicle) -> list[Section]:
@@ -241,15 +262,22 @@ def _run(case: Drive | Passage) -> list[tuple[str, str]]:
         case Drive(vehicle=vehicle):
             grid = spectral_grid(journey, vehicle)
             channels = len(vehicle.contacts) + len(vehicle.dof_names)
+            through_time = " or ".join(COUPLED_BY)
         case Passage(loads=loads):
             grid = SpectralGrid(samples=journey.samples, time_step=journey.time_step, truncation=journey.truncation)
             channels = len(loads.positions) + len(loads.observe)
-    memory = TRANSFORM.bytes_per_sample * channels * grid.padded
-    kept = f"{grid.kept} of them with the road" if journey.truncation is not None else "the truncation is found"
-    return [
+            through_time = NEWMARK
+    lines = [
         ("speed", f"{journey.speed:g} m/s ({3.6 * journey.speed:g} km/h)"),
         ("travel", f"{journey.duration:g} s over {journey.speed * journey.duration:g} m"),
         ("time steps", f"{journey.samples} of {journey.time_step:g} s"),
+    ]
+    if isinstance(case.guideway, FiniteGuideway):
+        return [*lines, ("method", f"through time: movingfrf run FILE --method {through_time}")]
+    memory = TRANSFORM.bytes_per_sample * channels * grid.padded
+    kept = f"{grid.kept} of them with the road" if journey.truncation is not None else "the truncation is found"
+    return [
+        *lines,
         ("frequencies", f"{grid.size} up to {0.5 / journey.time_step:g} Hz, {kept}"),
         ("memory", f"about {memory / 2**20:.3g} MiB"),
     ]
