@@ -17,6 +17,7 @@ from movingfrf.commands.console import _head, cell_of, listing, measures_in_line
 from movingfrf.commands.main import main
 from movingfrf.reports.tables import Column, Row, Table
 from movingfrf.results.labels import Measure
+from movingfrf.scenarios.template import template
 from tests.test_scenario import LOADS, edited
 
 SHORT = edited(duration=2.0)
@@ -219,3 +220,22 @@ def test_numbers_that_are_none_or_never():
     assert cell_of(Measure("x", "crossing rate", float("nan"), "1/s")) == "–"
     assert _head(Column("dynamic load coefficient", "1")) == "dynamic load coefficient"
     assert _head(Column("static", "N")) == "static [N]"
+
+
+def test_check_says_of_an_unstable_case_that_it_has_no_answer(tmp_path, capsys):
+    """It describes all that there is to describe, and ends as a run of it would."""
+    text = template("scenario").replace("speed = 10.0 ", "speed = 260.0 ").replace("truncation = 70.0", "# ")
+    for old, new in (
+        ("duration = 24.0", "duration = 0.5"),
+        ("damping = 3.0e4 ", "damping = 3.0e3 "),
+        ("suspension_damping = [3.0e4, 4.0e4]", "suspension_damping = [3.0e3, 4.0e3]"),
+        ("tyre_damping = [3.9e3, 4.3e3]", "tyre_damping = [0.0, 0.0]"),
+    ):
+        text = text.replace(old, new)
+    (tmp_path / "fast.toml").write_text(text)
+    assert main(["check", str(tmp_path / "fast.toml")]) == 2
+    told = capsys.readouterr()
+    for words in ("Vibrations on a rigid road", "Contacts at rest", "above the critical speed", "time steps"):
+        assert words in told.out
+    assert "unstable together at 260 m/s" in told.err
+    assert "in order" not in told.out

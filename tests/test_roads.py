@@ -255,7 +255,7 @@ def test_what_a_road_was_made_from_is_told_and_not_fitted(kind):
     from movingfrf.scenarios.description import described
 
     scenario = parse_scenario(f'{CAR}[roughness]\nkind = "{kind}"\n{SPECTRUM_KINDS[kind][0]}')
-    lines = dict(dict(described(scenario))["Roughness"])
+    lines = dict(dict(described(scenario).sections)["Roughness"])
     assert lines["source"] == scenario.case.road.description
     assert lines["fitted spectrum"] == "none: it was made from the spectrum above"
     assert not any("class" in name for name in lines)

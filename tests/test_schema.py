@@ -17,6 +17,8 @@ from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.schema import schema_as_json
 from movingfrf.scenarios.template import template
 from tests.test_roads import CAR, PARTS, SHAPE_KINDS, SPECTRUM_KINDS
+from tests.test_sampled_files import CASE as SAMPLED
+from tests.test_sampled_files import FINITE
 from tests.test_scenario import LOADS, edited
 from tests.test_vehicle_scenarios import GROUND, TEXTS
 
@@ -37,6 +39,8 @@ IN_ORDER = {
     },
     "roughness superposed": f"{CAR}[roughness]\n{PARTS}",
     "prescribed loads": LOADS,
+    "a sampled guideway": SAMPLED,
+    "a finite plate": FINITE,
     "a guideway that does not say its kind": LOADS.replace("[guideway]", "[guideway]\nkind = 'track'"),
     "a seed for each path": edited(seed="[1, 2]"),
 }
@@ -95,6 +99,9 @@ def test_what_is_in_order_passes(name):
         TEXTS["assemble"].replace('under = ["front", ""]', "under = [1, 2]") + GROUND,
         TEXTS["train"].replace("count = 3", "count = 3.5") + GROUND,
         TEXTS["convoy"].replace("gaps = 10.0", 'gaps = ["a"]') + GROUND,
+        SAMPLED.replace("file =", "fil ="),
+        FINITE.replace("ends = ", "ents = "),
+        FINITE.replace("across = 3", "across = 3.5"),
         CAR + '[roughness]\nkind = "iso_road"\nroad_class = "A"\ncoherence = 0.5',
         CAR + "[roughness]\n" + PARTS.replace("edge = 0.1", "edges = 0.1"),
     ],

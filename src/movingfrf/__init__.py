@@ -90,6 +90,8 @@ _WHERE = {
     "ScenarioError": "scenarios.scenario",
     "read_scenario": "scenarios.reading",
     "SampledGuideway": "guideways.sampled",
+    "read_sampled_guideway": "guideways.files",
+    "write_sampled_guideway": "guideways.files",
     "newmark_loads": "stepping.moving_loads",
     "moving_impulse_response": "stepping.impulse",
     "struck_track": "stepping.impulse",

@@ -66,6 +66,7 @@ REPORTS = [
 SCENARIOS = [
     "tests/test_scenario.py",
     "tests/test_schema.py",
+    "tests/test_sampled_files.py",
     "tests/test_roads.py",
     "tests/test_vehicle_scenarios.py",
     "tests/test_finite_scenarios.py",
@@ -96,7 +97,7 @@ def selection(fault: Fault | None) -> list[str]:
     independent = file.startswith(("stepping/", "guideways/sampled"))
     if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE
-    if file.startswith("scenarios/"):
+    if file.startswith(("scenarios/", "guideways/files")):
         return SCENARIOS + SELECTION
     if file.startswith(SHOWN):
         return REPORTS + SELECTION + REFERENCE

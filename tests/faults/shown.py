@@ -19,6 +19,8 @@ FAULTS = [
     Fault("kind that need not be said", "scenarios/schema.py", "kind.name != family.default else []", "0 else []"),
     Fault("infinity that is a mistake", "scenarios/schema.py", '["number", "null"]', '"number"'),
     Fault("list of no tables", "scenarios/schema.py", '{"minItems": 1}', "{}"),
+    Fault("record without its widths", "guideways/files.py", "if array is not None}", 'if "across" not in name}'),
+    Fault("journey off the road", "scenarios/stepped.py", "(journey.start, end))", "(end, end))"),
     # A scenario stepped through time.
     Fault(
         "weight of its own on a bridge",

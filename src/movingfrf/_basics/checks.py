@@ -165,8 +165,8 @@ class Checks:
         """Demand finite numbers in an array of the given shape (None: any length); returns a frozen copy."""
         try:
             given = np.asarray(value)
-            array = np.array(given, dtype=float)
-            numbers = given.dtype.kind in "iuf" or not array.size
+            numbers = given.dtype.kind in "iuf" or not given.size
+            array = np.array(given, dtype=float) if numbers else given
         except (TypeError, ValueError, OverflowError):
             numbers = False
         if not numbers:

@@ -54,15 +54,18 @@ def check(file: Path, /) -> None:
     file
         The scenario.
     """
-    from movingfrf.scenarios.description import described, remarks
+    from movingfrf._basics.checks import SolveError
+    from movingfrf.scenarios.description import described
     from movingfrf.scenarios.reading import read_scenario
 
-    scenario = read_scenario(file)
+    found = described(read_scenario(file))
     console = plain_console()
-    for heading, lines in described(scenario):
+    for heading, lines in found.sections:
         print_table(console, listing(heading, lines))
-    if noted := remarks(scenario):
-        print_findings(console, noted)
+    if found.remarks:
+        print_findings(console, found.remarks)
+    if found.refusal:
+        raise SolveError(f"{file}: {found.refusal}")
     console.print(f"{file}: in order", soft_wrap=True)
 
 
@@ -208,6 +211,7 @@ def random(
         from movingfrf.results.files import replacing, save, summary_as_json
         from movingfrf.scenarios.reading import read_scenario
         from movingfrf.scenarios.scenario import Drive
+        from movingfrf.scenarios.stepped import require_endless
 
         scenario = read_scenario(file)
         drive = scenario.case
@@ -226,7 +230,7 @@ def random(
             warnings.simplefilter("ignore", ValidityWarning)
             response = partial(
                 random_response,
-                drive.guideway,
+                require_endless(drive.guideway, instead="cdfm"),
                 drive.vehicle,
                 road.spectrum,
                 speed=drive.journey.speed,

@@ -9,6 +9,7 @@ import numpy as np
 
 from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import SolveError
 from movingfrf._basics.welch import welch
 from movingfrf.response.line import TRANSFORM, Line
 from movingfrf.response.simulation import line_of
@@ -18,7 +19,8 @@ from movingfrf.response.truncation import EVERYWHERE, Truncation
 from movingfrf.results.findings import near_critical
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
-from movingfrf.scenarios.scenario import Drive, Passage, Scenario
+from movingfrf.scenarios.scenario import COUPLED_BY, NEWMARK, Drive, Passage, Scenario
+from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.modes import Mode, vehicle_modes
 from movingfrf.vehicles.vehicle import Vehicle
@@ -38,7 +40,26 @@ class Unusual:
 UNUSUAL = Unusual()
 
 
-def described(scenario: Scenario) -> list[Section]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Description:
+    """What a scenario says.
+
+    Parameters
+    ----------
+    sections : list of (str, list of (str, str))
+        Headings, each with lines of name and value.
+    remarks : list of str
+        Sentences on what is in order and nevertheless invites to look at again.
+    refusal : str
+        Why it cannot be solved by moving FRFs; empty if it can, or is not meant to be.
+    """
+
+    sections: list[Section]
+    remarks: list[str]
+    refusal: str = ""
+
+
+def described(scenario: Scenario) -> Description:
     """Describe a scenario.
 
     Parameters
@@ -48,38 +69,30 @@ def described(scenario: Scenario) -> list[Section]:
 
     Returns
     -------
-    list of (str, list of (str, str))
-        Headings, each with lines of name and value.
+    Description
+        Sections, remarks, and a refusal where vehicle and guideway are unstable together.
     """
     sections: list[Section] = [("Guideway", _guideway(scenario))]
+    endless, speed, refusal, found = scenario.endless, scenario.journey.speed, "", []
+    if endless is not None:
+        found += [finding.message for finding in near_critical(speed, float(endless.critical_speed))]
     match scenario.case:
-        case Drive() as drive:
-            vehicle, _, vibrations = described_vehicle(drive.vehicle)
-            sections += [vehicle, ("Contacts in steady travel", _steady_contacts(drive)), vibrations]
-            sections.append(("Roughness", _roughness(drive.road)))
+        case Drive(vehicle=vehicle, road=road):
+            contacts: Section = ("Contacts at rest", _contacts(vehicle, vehicle.static_loads))
+            if endless is not None:
+                try:
+                    surveyed = survey(joined(endless, vehicle, speed))
+                except SolveError as error:
+                    refusal = str(error)
+                else:
+                    steady, found = surveyed.steady, [finding.message for finding in surveyed.findings]
+                    contacts = "Contacts in steady travel", _contacts(vehicle, steady.load, steady.deflection)
+            of_vehicle, _, vibrations = described_vehicle(vehicle)
+            sections += [of_vehicle, contacts, vibrations, ("Roughness", _roughness(road))]
+            found += _remarks_on_vehicle(vehicle, scenario.journey)
         case Passage() as passage:
             sections.append(("Loads", _loads(passage)))
-    return [*sections, ("Run", _run(scenario.case))]
-
-
-def remarks(scenario: Scenario) -> list[str]:
-    """Say what a scenario that is in order nevertheless invites to look at again.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        A checked scenario.
-
-    Returns
-    -------
-    list of str
-        Sentences; empty if there is nothing to remark.
-    """
-    critical_speed = float(scenario.guideway.critical_speed)
-    found = [finding.message for finding in near_critical(scenario.journey.speed, critical_speed)]
-    if isinstance(scenario.case, Drive):
-        found += _remarks_on_vehicle(scenario.case.vehicle, scenario.journey)
-    return found
+    return Description(sections=[*sections, ("Run", _run(scenario.case))], remarks=found, refusal=refusal)
 
 
 def _remarks_on_vehicle(vehicle: Vehicle, journey: Journey) -> list[str]:
@@ -103,6 +116,8 @@ def _remarks_on_vehicle(vehicle: Vehicle, journey: Journey) -> list[str]:
 
 
 def _guideway(scenario: Scenario) -> list[tuple[str, str]]:
+    if isinstance(scenario.guideway, FiniteGuideway):
+        return _finite(scenario.guideway)
     critical, speed = scenario.guideway.critical_speed, scenario.journey.speed
     share = "" if np.isinf(critical) else f", of which the speed is {speed / critical:.3g}"
     return [
@@ -111,9 +126,17 @@ def _guideway(scenario: Scenario) -> list[tuple[str, str]]:
     ]
 
 
-def _steady_contacts(drive: Drive) -> list[tuple[str, str]]:
-    steady = survey(joined(drive.guideway, drive.vehicle, drive.journey.speed)).steady
-    return _contacts(drive.vehicle, steady.load, steady.deflection)
+def _finite(road: FiniteGuideway) -> list[tuple[str, str]]:
+    first, last = road.interval
+    lines = [
+        ("kind", "finite road, not the same everywhere: no moving FRF, no critical speed"),
+        ("length", f"{last - first:g} m, from {first:g} m to {last:g} m" + (", travels along" * road.travels)),
+    ]
+    if road.width:
+        lines.append(("width", f"{road.width:g} m"))
+    if road.spacing:
+        lines.append(("elements", f"{round((last - first) / road.spacing)} along, of {road.spacing:g} m"))
+    return [*lines, ("unknowns", f"{road.dofs}")]
 
 
 def described_vehicle(vehicle: Vehicle) -> list[Section]:
@@ -242,16 +265,23 @@ def _run(case: Drive | Passage) -> list[tuple[str, str]]:
         case Drive(vehicle=vehicle):
             line = line_of(journey, vehicle)
             channels = len(vehicle.contacts) + len(vehicle.dof_names)
+            through_time = " or ".join(COUPLED_BY)
         case Passage(loads=loads):
             line = Line(samples=journey.samples, time_step=journey.time_step)
             channels = len(loads.positions) + len(loads.observe)
+            through_time = NEWMARK
+    lines = [
+        ("speed", f"{journey.speed:g} m/s ({3.6 * journey.speed:g} km/h)"),
+        ("travel", f"{journey.duration:g} s over {journey.speed * journey.duration:g} m"),
+        ("time steps", f"{journey.samples} of {journey.time_step:g} s"),
+    ]
+    if isinstance(case.guideway, FiniteGuideway):
+        return [*lines, ("method", f"through time: movingfrf run FILE --method {through_time}")]
     memory = TRANSFORM.bytes_per_sample * channels * line.padded
     cut = EVERYWHERE if journey.truncation is None else Truncation(frequency=journey.truncation)
     kept = "the truncation is found" if cut is EVERYWHERE else f"{cut.reach(line.omega())} of them with the road"
     return [
-        ("speed", f"{journey.speed:g} m/s ({3.6 * journey.speed:g} km/h)"),
-        ("travel", f"{journey.duration:g} s over {journey.speed * journey.duration:g} m"),
-        ("time steps", f"{journey.samples} of {journey.time_step:g} s"),
+        *lines,
         ("frequencies", f"{line.size} up to {0.5 / journey.time_step:g} Hz, {kept}"),
         ("memory", f"about {memory / 2**20:.3g} MiB"),
     ]

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from movingfrf.guideways.beams import Beam, EulerBernoulliBeam, TimoshenkoBeam
+from movingfrf.guideways.files import read_sampled_guideway
 from movingfrf.guideways.foundations import Foundation, OnMass, ShearLayer, Spring
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.rigid import RigidGuideway
@@ -52,7 +53,8 @@ PROFILE = Kind(
 BEAM = family("beam", Beam, EulerBernoulliBeam, TimoshenkoBeam)
 FOUNDATION = family("foundation", Foundation, Spring, ShearLayer, OnMass)
 TRACK = family("track", Track, track)
-GUIDEWAY = family("guideway", Guideway, track, RigidGuideway, finite_track, finite_plate, default="track")
+SAMPLED = Kind.of(read_sampled_guideway, name="sampled_guideway")
+GUIDEWAY = family("guideway", Guideway, track, RigidGuideway, SAMPLED, finite_track, finite_plate, default="track")
 VEHICLE = family(
     "vehicle",
     Vehicle,

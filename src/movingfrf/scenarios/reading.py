@@ -9,12 +9,15 @@ from pathlib import Path
 from typing import Any
 
 from movingfrf._basics.checks import Fault, ParameterError, nearest, shown
+from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.response.line import require_record
 from movingfrf.response.simulation import line_of
 from movingfrf.roughness.excitation import require_cover
 from movingfrf.scenarios.kind import Family, Key, Kind
 from movingfrf.scenarios.kinds import DRIVE, PASSAGE, TABLES, VEHICLE
 from movingfrf.scenarios.scenario import Drive, Passage, Scenario, ScenarioError
+from movingfrf.scenarios.stepped import require_journey
+from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.catalogue import catalogue
 from movingfrf.vehicles.files import read_vehicle
 from movingfrf.vehicles.vehicle import Vehicle
@@ -146,7 +149,19 @@ class _Builder:
                 return None
         self._check_keys("", tables, wanted, wanted)
         case = (self._passage if with_loads else self._drive)(tables)
-        return None if case is None else Scenario(name=name, text=text, case=case, folder=self.folder)
+        if case is None or not self._suits(case):
+            return None
+        return Scenario(name=name, text=text, case=case, folder=self.folder)
+
+    def _suits(self, case: Drive | Passage) -> bool:
+        """Refuse a journey off a finite road, or other than one that was recorded."""
+        match case.guideway:
+            case FiniteGuideway() as road:
+                return self._attempt("guideway:", lambda: require_journey(road, case.places, case.journey))
+            case SampledGuideway() as record:
+                at_speed = self._attempt("run:", lambda: record.require_speed(case.journey.speed))
+                return self._attempt("guideway:", lambda: record.columns(**case.offsets)) and at_speed
+        return True
 
     def _passage(self, tables: Mapping[str, Any]) -> Passage | None:
         made = {key: self.section(tables, key, family) for key, family in PASSAGE.items()}

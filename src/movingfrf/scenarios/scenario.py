@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Fault, nearest, shown
 from movingfrf._basics.progress import Progress, silent
@@ -19,7 +21,7 @@ from movingfrf.scenarios.stepped import EXCHANGED, Division, coupled, elements, 
 from movingfrf.stepping.exchange import SOLVED
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.journey import Journey
-from movingfrf.vehicles.vehicle import Vehicle
+from movingfrf.vehicles.vehicle import Offsets, Vehicle
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,7 +58,7 @@ class Drive:
 
     Parameters
     ----------
-    guideway : Guideway
+    guideway : Guideway or FiniteGuideway
         The road or track.
     vehicle : Vehicle
         The vehicle.
@@ -66,20 +68,20 @@ class Drive:
         Speed, duration, steps.
     """
 
-    guideway: Guideway
+    guideway: Guideway | FiniteGuideway
     vehicle: Vehicle
     road: Road
     journey: Journey
 
     @property
-    def sources(self) -> FloatArray:
-        """Where forces act, ahead of the reference point [m]."""
+    def places(self) -> FloatArray:
+        """Where contacts stand, ahead of the reference point [m]."""
         return self.vehicle.positions
 
     @property
-    def receivers(self) -> FloatArray:
-        """Where the deflection is wanted, ahead of the reference point [m]."""
-        return self.vehicle.positions
+    def offsets(self) -> Offsets:
+        """Offset of every contact from every contact, as a guideway's `moving_frf` takes them [m]."""
+        return self.vehicle.offsets
 
     def run(self, progress: Progress = silent, method: str = MOVING_FRF) -> xr.Dataset:
         """Compute the response.
@@ -126,7 +128,7 @@ class Passage:
 
     Parameters
     ----------
-    guideway : Guideway
+    guideway : Guideway or FiniteGuideway
         The road or track.
     loads : Loads
         The loads, and where the deflection is wanted.
@@ -134,19 +136,19 @@ class Passage:
         Speed, duration, steps.
     """
 
-    guideway: Guideway
+    guideway: Guideway | FiniteGuideway
     loads: Loads
     journey: Journey
 
     @property
-    def sources(self) -> FloatArray:
-        """Where forces act, ahead of the reference point [m]."""
-        return self.loads.positions
+    def places(self) -> FloatArray:
+        """Where loads and observers stand, ahead of the reference point [m]."""
+        return np.concatenate([self.loads.positions, self.loads.observe])
 
     @property
-    def receivers(self) -> FloatArray:
-        """Where the deflection is wanted, ahead of the reference point [m]."""
-        return self.loads.observe
+    def offsets(self) -> Offsets:
+        """Offset of every observer from every load, as a guideway's `moving_frf` takes them [m]."""
+        return {"ahead": np.round(self.loads.observe[:, None] - self.loads.positions, 9)}
 
     @property
     def forces(self) -> FloatArray:
@@ -219,7 +221,7 @@ class Scenario:
     folder: Path = Path()
 
     @property
-    def guideway(self) -> Guideway:
+    def guideway(self) -> Guideway | FiniteGuideway:
         """The road or track."""
         return self.case.guideway
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.beams import EulerBernoulliBeam
 from movingfrf.guideways.guideway import Guideway
@@ -20,6 +21,7 @@ from movingfrf.stepping.exchange import SOLVED, Iteration
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.finite_track import bending_length, finite_track
 from movingfrf.stepping.moving_loads import newmark_loads
+from movingfrf.stepping.requirements import require_on_guideway
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -125,6 +127,28 @@ def require_endless(guideway: Guideway | FiniteGuideway, *, instead: str) -> Gui
             f"time: `movingfrf run FILE --method {instead}`, or run(method={instead!r}) in Python"
         )
     return guideway
+
+
+def require_journey(road: FiniteGuideway, places: FloatArray, journey: Journey) -> None:
+    """Refuse a journey that leads off a finite road.
+
+    Parameters
+    ----------
+    road : FiniteGuideway
+        The road.
+    places : ndarray
+        Where contacts, or loads and observers, stand, ahead of the reference point [m].
+    journey : Journey
+        How they travel.
+
+    Raises
+    ------
+    ValueError
+        If it does.
+    """
+    end = journey.start + journey.speed * journey.time_step * journey.samples
+    with checking() as check:
+        require_on_guideway(check, road, places, (0.0, road.spacing) if road.travels else (journey.start, end))
 
 
 def divisible(guideway: Guideway) -> Track:

@@ -116,9 +116,10 @@ def finite_plate(
     transverse : float
         Bending stiffness across over that along, a ratio.
     ends : str or tuple of str
-        As for `finite_track`; the edges along the road are free.
+        "pinned", "clamped", "guided", "free" or "absorbing", one for both or one for each, as for `finite_track`;
+        the edges along the road are free.
     absorbing : float, optional
-        As for `finite_track` [m].
+        Length of the stretch that absorbs at each absorbing end [m]; None: 15 m, or a third of a short road.
     band : float
         Highest frequency whose waves the elements shall resolve [Hz].
     travels : bool

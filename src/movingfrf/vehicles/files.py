@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from movingfrf._basics import matlab_file
+from movingfrf._basics.array_file import Arrays, Content, read_arrays, write_arrays
 from movingfrf._basics.checks import Checks, ParameterError, checking
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.vehicle import Vehicle
@@ -40,8 +39,8 @@ class VehicleArrays:
 
 ARRAYS = VehicleArrays()
 
-# What a file of this kind may weigh at most [bytes; a convention]: a vehicle of a thousand degrees of freedom.
-LARGEST_FILE = 2**28
+# A vehicle of a thousand degrees of freedom is not larger [a convention].
+VEHICLE = Content(what="a vehicle", largest=2**28, texts=ARRAYS.optional)
 
 
 def read_vehicle(file: str | Path) -> Vehicle:
@@ -67,22 +66,11 @@ def read_vehicle(file: str | Path) -> Vehicle:
     ValueError
         If the file cannot be read, an array is missing, unknown or of the wrong shape, or the vehicle is refused.
     """
-    path = Path(file)
-    readers = {".mat": _read_mat, ".npz": _read_npz, ".toml": _read_toml}
-    if path.suffix.lower() not in readers:
-        raise ValueError(
-            f"{path}: a vehicle is read from {', '.join(readers)}, not from {path.suffix or 'no ending'}"
-        )
-    try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise ValueError(f"{path}: is larger than {LARGEST_FILE // 2**20} MiB, too large for a vehicle")
-        arrays = readers[path.suffix.lower()](path)
-    except OSError as error:
-        raise ValueError(f"cannot read {path}: {error.strerror or error}") from None
+    arrays = read_arrays(file, VEHICLE, {".toml": _read_toml})
     try:
         return _filled(arrays)
     except ParameterError as error:
-        raise ValueError(f"{path}: {error}") from None
+        raise ValueError(f"{Path(file)}: {error}") from None
 
 
 def write_vehicle(vehicle: Vehicle, file: str | Path) -> None:
@@ -100,7 +88,6 @@ def write_vehicle(vehicle: Vehicle, file: str | Path) -> None:
     ValueError
         If the ending is another one.
     """
-    path = Path(file)
     mass, damping, stiffness, contact_map = vehicle.matrices
     arrays: dict[str, Any] = {
         "mass": mass,
@@ -117,16 +104,7 @@ def write_vehicle(vehicle: Vehicle, file: str | Path) -> None:
         "dof_names": np.array(vehicle.dof_names),
         "contact_name": np.array([one.name for one in vehicle.contacts]),
     }
-    if path.suffix.lower() == ".npz":
-        np.savez(path, **arrays)
-    elif path.suffix.lower() == ".mat":
-        from scipy.io import savemat
-
-        # Texts become cells.
-        cells = {name: array.astype(object) for name, array in arrays.items() if array.dtype.kind == "U"}
-        savemat(path, arrays | cells, appendmat=False, oned_as="column")
-    else:
-        raise ValueError(f"{path}: a vehicle is written to .mat or .npz, not to {path.suffix or 'no ending'}")
+    write_arrays(file, arrays, VEHICLE.what)
 
 
 def _filled(arrays: Mapping[str, Any]) -> Vehicle:
@@ -207,32 +185,7 @@ def _row(check: Checks, name: str, value: Any, count: int) -> np.ndarray:
     return row
 
 
-def _read_mat(path: Path) -> dict[str, Any]:
-    data = path.read_bytes()
-    if data.startswith(b"MATLAB 7.3"):
-        raise ValueError(f"{path}: is a MATLAB 7.3 file; save it with -v7")
-    try:
-        found = matlab_file.arrays_and_texts(data)
-        numbers = {name: stored.load() for name, stored in found.numbers.items()}
-        return numbers | {name: load() if name in ARRAYS.optional else [] for name, load in found.texts.items()}
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
-
-
-def _read_npz(path: Path) -> dict[str, Any]:
-    try:
-        # NumPy leaves a file open that it opened itself and could not read.
-        with path.open("rb") as file, zipfile.ZipFile(file) as archive:
-            needed = sum(entry.file_size for entry in archive.infolist())
-        if needed > LARGEST_FILE:
-            raise ValueError(f"it unpacks to {needed / 2**20:.4g} MiB, too much for a vehicle")
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as found:
-            return {name: found[name] for name in found.files}
-    except (ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError, MemoryError) as error:
-        raise ValueError(f"{path}: is not a file of NumPy arrays: {error}") from None
-
-
-def _read_toml(path: Path) -> dict[str, Any]:
+def _read_toml(path: Path, _: Content) -> Arrays:
     try:
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:

@@ -27,6 +27,7 @@ from movingfrf.scenarios.stepped import (
     coupled,
     divisible,
     loaded,
+    require_endless,
     run_in_of,
     stretch,
 )
@@ -76,12 +77,12 @@ class Case:
     @property
     def places(self) -> FloatArray:
         """Where contacts, or loads and observers, stand, ahead of the reference point [m]."""
-        return np.concatenate([self.scenario.case.sources, self.scenario.case.receivers])
+        return self.scenario.case.places
 
     @property
     def offsets(self) -> FloatArray:
         """Every distance from a contact or load to a contact or observer [m]."""
-        return np.unique(np.round(self.scenario.case.receivers[:, None] - self.scenario.case.sources, 9))
+        return np.unique(self.scenario.case.offsets["ahead"])
 
     @property
     def parts(self) -> tuple[Vehicle, Profile]:
@@ -98,7 +99,7 @@ class Case:
     @property
     def run_in(self) -> float:
         """Time for which the weight travels before the record [s]: the same whatever this case's step."""
-        return run_in_of(self.scenario.guideway, self.scenario.case.sources, self.scenario.journey)
+        return run_in_of(self.scenario.guideway, self.places, self.scenario.journey)
 
     def division(self, *, travels: bool = False) -> Division:
         """Say how this case divides a road into elements."""
@@ -119,7 +120,7 @@ def _transformed(case: Case, guideway: Guideway) -> Solve:
 
 
 def _moving_frf(case: Case) -> Solve:
-    return _transformed(case, case.scenario.guideway)
+    return _transformed(case, require_endless(case.scenario.guideway, instead="cdfm"))
 
 
 def _moving_frf_fe(case: Case, *, plain: bool = False) -> Solve:
@@ -303,7 +304,7 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
     known, others = (FOR_VEHICLE, FOR_LOADS) if with_vehicle else (FOR_LOADS, FOR_VEHICLE)
     guideway = scenario.guideway
     ends = isinstance(guideway, FiniteGuideway)
-    if not ends:
+    if not isinstance(guideway, FiniteGuideway):
         divisible(guideway)
     if isinstance(scenario.case, Drive) and np.isinf(scenario.case.vehicle.springs).any():
         raise ValueError(
@@ -312,7 +313,7 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
             "wheel on a rail"
         )
     # 40 m of road have no room for a vehicle longer than 16 m: what strikes them is then not among the usual ones.
-    long = with_vehicle and np.ptp(scenario.case.sources) > 16.0
+    long = with_vehicle and np.ptp(scenario.case.places) > 16.0
     suited = {name: method for name, method in known.items() if method.finite or not ends}
     usual = [name for name, method in suited.items() if method.usual and not (long and method.strikes)]
     wanted = usual if names is None else list(names)

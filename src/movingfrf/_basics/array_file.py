@@ -1,0 +1,129 @@
+"""Named arrays in files: NumPy's .npz and MATLAB's .mat, read without trust and written."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from movingfrf._basics import matlab_file
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Content:
+    """What a file holds.
+
+    Parameters
+    ----------
+    what : str
+        What the arrays make, with its article, for messages.
+    largest : int
+        What a file may weigh and unpack to at most [bytes].
+    texts : collection of str
+        Names under which texts are read; others are met with an empty list in their place.
+    """
+
+    what: str
+    largest: int
+    texts: Collection[str] = ()
+
+
+# Arrays by name.
+Arrays = dict[str, Any]
+Reader = Callable[[Path, Content], Arrays]
+
+
+def read_arrays(file: str | Path, content: Content, others: Mapping[str, Reader] | None = None) -> Arrays:
+    """Read the arrays of a file, `.mat` (MATLAB, up to version 7.2) or `.npz` (NumPy).
+
+    Parameters
+    ----------
+    file : str or Path
+        The file.
+    content : Content
+        What it holds.
+    others : dict of str to callable, optional
+        Endings that are read as well, and what reads them.
+
+    Returns
+    -------
+    dict of str to array_like
+        By name.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, is too large, or has another ending.
+    """
+    path = Path(file)
+    readers = {".mat": _read_mat, ".npz": _read_npz, **(others or {})}
+    if path.suffix.lower() not in readers:
+        raise ValueError(
+            f"{path}: {content.what} is read from {', '.join(readers)}, not from {path.suffix or 'no ending'}"
+        )
+    try:
+        if path.stat().st_size > content.largest:
+            raise ValueError(f"{path}: is larger than {content.largest // 2**20} MiB, too large for {content.what}")
+        return readers[path.suffix.lower()](path, content)
+    except OSError as error:
+        raise ValueError(f"cannot read {path}: {error.strerror or error}") from None
+
+
+def write_arrays(file: str | Path, arrays: Mapping[str, Any], what: str) -> None:
+    """Write arrays to a file, `.mat` or `.npz`; replaced if it is there.
+
+    Parameters
+    ----------
+    file : str or Path
+        The file.
+    arrays : dict of str to array_like
+        By name.
+    what : str
+        What they make, with its article, for messages.
+
+    Raises
+    ------
+    ValueError
+        If the ending is another one.
+    """
+    path = Path(file)
+    if path.suffix.lower() == ".npz":
+        np.savez(path, **arrays)
+    elif path.suffix.lower() == ".mat":
+        from scipy.io import savemat
+
+        # Texts become cells.
+        texts = [name for name, array in arrays.items() if np.asarray(array).dtype.kind == "U"]
+        cells = {name: np.asarray(arrays[name]).astype(object) for name in texts}
+        savemat(path, {**arrays, **cells}, appendmat=False, oned_as="column")
+    else:
+        raise ValueError(f"{path}: {what} is written to .mat or .npz, not to {path.suffix or 'no ending'}")
+
+
+def _read_mat(path: Path, content: Content) -> Arrays:
+    data = path.read_bytes()
+    if data.startswith(b"MATLAB 7.3"):
+        raise ValueError(f"{path}: is a MATLAB 7.3 file; save it with -v7")
+    try:
+        found = matlab_file.arrays_and_texts(data)
+        numbers = {name: stored.load() for name, stored in found.numbers.items()}
+        return numbers | {name: load() if name in content.texts else [] for name, load in found.texts.items()}
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _read_npz(path: Path, content: Content) -> Arrays:
+    try:
+        # NumPy leaves a file open that it opened itself and could not read.
+        with path.open("rb") as file, zipfile.ZipFile(file) as archive:
+            needed = sum(entry.file_size for entry in archive.infolist())
+        if needed > content.largest:
+            raise ValueError(f"it unpacks to {needed / 2**20:.4g} MiB, too much for {content.what}")
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as found:
+            return {name: found[name] for name in found.files}
+    except (ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError, MemoryError) as error:
+        raise ValueError(f"{path}: is not a file of NumPy arrays: {error}") from None
