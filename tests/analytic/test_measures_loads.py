@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
+from movingfrf.metrics.listed import CAPTIONS, RANDOM_CAPTIONS, TABLES
 from movingfrf.metrics.measures import assess, random_measures
 from movingfrf.results.labels import COUPLED, labelled
 from tests.helpers import DAMPED
@@ -330,3 +331,16 @@ def test_usual_measures_are_among_all():
 def test_refusals(call, message):
     with pytest.raises(ValueError, match=message):
         call(travelled(amplitude=1e3))
+
+
+def test_every_measure_has_a_caption_and_a_name_of_its_own():
+    for table in TABLES:
+        of_history = [entry.history.name for entry in table.entries if entry.history]
+        of_random = [
+            (taken.quantity or table.quantity, taken.name) for entry in table.entries if (taken := entry.random)
+        ]
+        assert len(set(of_history)) == len(of_history)
+        assert len(set(of_random)) == len(of_random)
+        assert not of_history or table.quantity in CAPTIONS
+        assert {quantity for quantity, _ in of_random} <= RANDOM_CAPTIONS.keys()
+        assert all(entry.history or entry.random for entry in table.entries)

@@ -122,9 +122,9 @@ FAULTS = [
     # What is left out, told apart, cut and refused.
     Fault(
         "vehicle that never runs in",
-        "metrics/measures.py",
-        "whole, result = result, result.isel",
-        "whole, _ = result, result.isel",
+        "metrics/entry.py",
+        "samples_before(self.since, self.step, self.whole",
+        "samples_before(0.0, self.step, self.whole",
     ),
     Fault(
         "weighting that starts anew",
@@ -132,6 +132,6 @@ FAULTS = [
         "values = weighted(acceleration, time_step, weighting)[first:]",
         "values = weighted(np.asarray(acceleration)[first:], time_step, weighting)",
     ),
-    Fault("limit the other way", "metrics/measures.py", "if name in felt.exceeded", "if name not in felt.exceeded"),
-    Fault("one refusal for all", "metrics/measures.py", "if common_points(result).size:", "if True:"),
+    Fault("limit the other way", "metrics/listed.py", "if name in felt.exceeded", "if name not in felt.exceeded"),
+    Fault("one refusal for all", "metrics/entry.py", "if common_points(self.result).size", "if True"),
 ]
