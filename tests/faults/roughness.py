@@ -157,9 +157,7 @@ FAULTS = [
     Fault("formats not told", "roughness/files.py", ".replace(words, instead)", '.replace(words, "")'),
     Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
     Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
-    Fault(
-        "high pass of first order", "roughness/steps/high_passed.py", "butter(FILTER.gentle, 1 /", "butter(1, 1 /"
-    ),
+    Fault("high pass of first order", "roughness/steps/base.py", "order=FILTER.gentle", "order=1"),
     Fault(
         "resampled with aliases",
         "roughness/steps/resampled.py",
