@@ -52,6 +52,7 @@ _WHERE = {
     "repaired": "roughness.steps.repaired",
     "detrended": "roughness.steps.detrended",
     "high_passed": "roughness.steps.high_passed",
+    "low_passed": "roughness.steps.low_passed",
     "resampled": "roughness.steps.resampled",
     "repeated": "roughness.steps.repeated",
     "mirrored": "roughness.steps.mirrored",

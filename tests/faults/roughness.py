@@ -169,6 +169,7 @@ FAULTS = [
         "mirror doubles its end", "roughness/steps/mirrored.py", "% (2 * last) - last", "% (2 * last + 1) - last"
     ),
     Fault("fault by the name in Python", "roughness/preparation.py", "key_of.get(fault.name, ", "("),
+    Fault("short for long waves", "roughness/steps/low_passed.py", '"shorter", wavelength', '"longer", wavelength'),
     Fault("steps exclude nothing", "roughness/preparation.py", "if step.without in asked and", "if"),
     Fault("steps forgotten", "roughness/steps/base.py", "steps=(*profile.steps, sentence)", "steps=(sentence,)"),
     Fault(
