@@ -119,6 +119,7 @@ _WHERE = {
     "comfort_reactions": "metrics.comfort",
     "dynamic_load_coefficient": "metrics.loads",
     "road_stress_factor": "metrics.loads",
+    "impact_factor": "metrics.impact",
     "aggregate_force": "metrics.loads",
     "road_wear": "metrics.loads",
     "spatial_repeatability": "metrics.loads",

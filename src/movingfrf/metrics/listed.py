@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf.metrics import impact
 from movingfrf.metrics.comfort import ISO_2631
 from movingfrf.metrics.entry import Entry, History, OfHistory, OfRandom, Random, Table
 from movingfrf.metrics.fatigue import equivalent_amplitude
@@ -140,6 +141,7 @@ FORCES = Table(
                 "load",
             ),
         ),
+        impact.ENTRY,
         Entry(
             "N",
             random=OfRandom(
