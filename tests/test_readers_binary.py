@@ -218,7 +218,7 @@ def test_faulty_tracks(tmp_path, text, message):
         ({"columns": [0]}, "a station and at least one elevation"),
         ({"crop_rims": 1}, "crop_rims must be true or false"),
         ({"repair_gaps": -1.0}, "repair_gaps must be positive"),
-        ({"format": "docx"}, "format must be one of crg, erd, mat, netcdf, gpx, csv, got 'docx'"),
+        ({"format": "docx"}, "format must be one of crg, .*, csv, got 'docx'"),
         ({"format": ["csv"]}, "format must be one of"),
     ],
 )

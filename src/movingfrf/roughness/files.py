@@ -19,7 +19,15 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 # All formats; text in columns last, since any text might be that.
 FORMATS = {
-    form.name: form for form in (crg.FORMAT, erd.FORMAT, matlab.FORMAT, netcdf.FORMAT, gpx.FORMAT, text.FORMAT)
+    form.name: form
+    for form in (
+        crg.FORMAT,
+        erd.FORMAT,
+        matlab.FORMAT,
+        netcdf.FORMAT,
+        gpx.FORMAT,
+        text.FORMAT,
+    )
 }
 
 
