@@ -58,6 +58,7 @@ _WHERE = {
     "mirrored": "roughness.steps.mirrored",
     "prepared": "roughness.preparation",
     "describe_profile": "metrics.profile",
+    "TwoSlopeRoad": "roughness.spectra.two_slope",
     "FraTrack": "roughness.spectra.rail",
     "FrybaTrack": "roughness.spectra.rail",
     "GermanTrack": "roughness.spectra.rail",

@@ -8,6 +8,10 @@ FAULTS = [
     # Road.
     Fault("two-sided density", "roughness/realisation.py", "np.sqrt(variance / 2)", "np.sqrt(variance)"),
     Fault("arithmetic class centres", "roughness/spectra/iso.py", "16e-6 * 4.0**n", "20e-6 * 4.0**n"),
+    Fault("slopes exchanged", "roughness/spectra/two_slope.py", "MEETING, long, short)", "MEETING, short, long)"),
+    Fault(
+        "slopes overlap", "roughness/spectra/two_slope.py", "(np.minimum, np.maximum)", "(np.minimum, np.minimum)"
+    ),
     Fault("limits at the centres", "roughness/spectra/iso.py", "roughness < 2 * centre", "roughness < centre"),
     Fault(
         "waviness ignored",

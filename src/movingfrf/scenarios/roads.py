@@ -20,6 +20,7 @@ from movingfrf.roughness.spectra.iso import IsoRoad
 from movingfrf.roughness.spectra.rail import ChineseBallastlessTrack, FraTrack, FrybaTrack, GermanTrack, SncfTrack
 from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.roughness.spectra.tabulated import TabulatedSpectrum, ThirdOctaveSpectrum, iso3095_limit
+from movingfrf.roughness.spectra.two_slope import TwoSlopeRoad
 
 
 def _with_signature(function: Callable[..., Any], parameters: Iterable[inspect.Parameter]) -> Callable[..., Any]:
@@ -134,6 +135,7 @@ def roads_side_by_side(*, interval: tuple[float, float], parts: Sequence[Road]) 
 # Kind of spectrum → what makes it.
 SPECTRA: dict[str, Callable[..., Spectrum]] = {
     "iso_road": by_class(IsoRoad),
+    "two_slope_road": by_class(TwoSlopeRoad),
     "fra_track": by_class(FraTrack),
     "fryba_track": by_class(FrybaTrack),
     "german_track": by_class(GermanTrack),
