@@ -45,6 +45,24 @@ def test_high_pass_takes_out_the_level():
     assert np.abs(mf.high_passed(mf.Profile(X, 583.0 + 0 * X), wavelength=50.0).elevation).max() < 1e-9
 
 
+@pytest.mark.parametrize("length", [0.4, 1.0, 2.0, 4.0, 20.0])
+def test_low_pass_keeps_its_share_and_shifts_nothing(length):
+    """Closed form of the filter at even steps h: tan(πh/λ) stands for πh/λ, by the bilinear transform."""
+    before = waves(length)
+    after = mf.low_passed(before, wavelength=2.0)
+    ratio = amplitude(after, length) / amplitude(before, length)
+    warped = np.tan(np.pi * STEP / length) / np.tan(np.pi * STEP / 2.0)
+    assert ratio == pytest.approx(1 / (1 + warped**4), abs=2e-4)
+    said(after, "took out waves shorter than 2 m", "both ways")
+
+
+def test_low_and_high_pass_share_every_wave_between_them():
+    road = mf.Profile(X, np.random.default_rng(4).normal(size=X.size))
+    both = mf.low_passed(road, wavelength=5.0).elevation + mf.high_passed(road, wavelength=5.0).elevation
+    assert both[1000:-1000] == pytest.approx(road.elevation[1000:-1000], abs=1e-9)
+    assert mf.prepared(road, low_pass=5.0).elevation == pytest.approx(mf.low_passed(road, wavelength=5.0).elevation)
+
+
 def test_resampling_takes_out_what_would_come_back_as_another_wave():
     """A wave of 0.6 m at stations every 0.5 m would look like one of 3 m."""
     before = waves(0.6, 10.0)

@@ -174,6 +174,7 @@ PRECISION = {
     ("road.csv", None): 0.0,
     ("road.nc", None): 0.0,
     ("road.mat", None): 0.0,
+    ("road.npz", None): 0.0,
     ("road.erd", "text"): 0.0,
     ("road.erd", "double"): 0.0,
     ("road.erd", "float"): 2.0**-24,
@@ -194,9 +195,9 @@ def test_round_trips_are_exact_to_the_precision_of_the_format(tmp_path, name, en
     assert np.abs(back.elevation - elevation).max() <= PRECISION[name, encoding]
     assert back.stations == pytest.approx(road.stations, rel=1e-15)
     assert "a road" in back.source or name.endswith(("csv", "mat", "crg"))
-    if name.endswith(("nc", "crg", "mat")):
+    if name.endswith(("nc", "crg", "mat", "npz")):
         assert back.across == pytest.approx((0.75, -0.75))
-    if name.endswith("nc"):
+    if name.endswith(("nc", "npz")):
         assert back.steps == ("made up",)
 
 
@@ -219,7 +220,7 @@ def test_every_format_is_tried_and_told_of(capsys):
         assert (form.name in mf.write_profile.__doc__) == (form.write is not None)
 
 
-@pytest.mark.parametrize("name", ["road.csv", "road.nc", "road.mat", "road.erd", "road.crg"])
+@pytest.mark.parametrize("name", ["road.csv", "road.nc", "road.mat", "road.npz", "road.erd", "road.crg"])
 def test_one_path_stays_one_path(tmp_path, name):
     road = mf.Profile(0.5 * np.arange(6), [0.0, 0.1, 0.3, -0.2, 0.1, 0.0])
     mf.write_profile(road, tmp_path / name)
@@ -232,7 +233,7 @@ def test_one_path_stays_one_path(tmp_path, name):
 
 def test_uneven_stations_survive_where_the_format_has_stations(tmp_path):
     road = mf.Profile(STATIONS, HEIGHTS)
-    for name in ("road.csv", "road.nc", "road.mat"):
+    for name in ("road.csv", "road.nc", "road.mat", "road.npz"):
         mf.write_profile(road, tmp_path / name)
         assert mf.read_profile(tmp_path / name).profile.stations.tolist() == STATIONS.tolist()
     for name in ("road.erd", "road.crg"):
@@ -250,7 +251,7 @@ def test_uneven_stations_survive_where_the_format_has_stations(tmp_path):
         ),
         ("road.gpx", {}, r"gpx is only read, not written; written are files that end in \.crg"),
         ("road.csv", {"encoding": "float"}, "csv has no encoding 'float'; it has none"),
-        ("road.csv", {"format": "docx"}, "there is no format 'docx'; it is one of crg, erd, mat, netcdf, csv$"),
+        ("road.csv", {"format": "docx"}, "there is no format 'docx'; it is one of crg, .*, csv$"),
         ("road.crg", {}, "needs the lateral positions of two paths"),
     ],
 )

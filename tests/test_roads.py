@@ -52,6 +52,7 @@ RAIL = mf.ThirdOctaveSpectrum(wavelength=[0.2, 0.16, 0.125], level=[3.0, 1.0, -1
 
 SPECTRUM_KINDS = {
     "iso_road": ('road_class = "B"\nband = [0.05, 5.0]', mf.IsoRoad.of_class("B", band=(0.05, 5.0))),
+    "two_slope_road": ('road_class = "poor minor road"', mf.TwoSlopeRoad.of_class("poor minor road")),
     "fra_track": ("track_class = 4", mf.FraTrack.of_class(4)),
     "fryba_track": ("roughness = 1e-8", mf.FrybaTrack(roughness=1e-8)),
     "german_track": ('track_class = "low"', mf.GermanTrack.of_class("low")),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
+from movingfrf.metrics.listed import CAPTIONS, RANDOM_CAPTIONS, TABLES
 from movingfrf.metrics.measures import assess, random_measures
 from movingfrf.results.labels import labelled
 from tests.helpers import DAMPED
@@ -107,6 +108,25 @@ def test_an_axle_that_hangs_between_others():
         found["contact 1 force", "road stress factor"] == listed["contact 1 load", "road stress factor"] == np.inf
     )
     assert not any(np.isnan(value) for (quantity, _), value in found.items() if "pitch" not in quantity)
+
+
+def test_impact_factor():
+    """Of a cosine, whole waves: A cos(π/20) is exceeded for 5 % of the time; of a Gaussian force, 1 + 1.645 s."""
+    result = travelled(amplitude=1e3, phase=0.3)
+    expected = 1 + 1e3 * np.cos(np.pi / 20) / np.array([5e3, 8e3])
+    # A hundred samples a wave: the percentile lies within a step of the phase.
+    assert mf.impact_factor(result) == pytest.approx(expected, abs=0.2 * np.sin(np.pi / 20) * 2 * np.pi / 100)
+    assert mf.impact_factor(result, percentile=100.0)[0] == pytest.approx(1.2, abs=1e-3)
+    assert mf.impact_factor(travelled(amplitude=1.0, loads=(-500.0, 1.0)))[0] == np.inf
+    random = mf.random_response(PAVEMENT, TRUCK, mf.IsoRoad.of_class("B"), speed=20.0)
+    listed = {(m.quantity, m.name): m.value for m in random_measures(random)}
+    found = listed["contact 0 load", "impact factor (95 %)"]
+    assert found == pytest.approx(1 + 1.6448536 * random.dynamic_load_coefficient.values[0], rel=1e-8)
+    gaussian = 1e3 * np.random.default_rng(5).normal(size=result.contact_force.shape)
+    noisy = result.assign(contact_force=(result.contact_force.dims, gaussian))
+    taken = {(m.quantity, m.name): m.value for m in mf.assess(noisy)}
+    # Scatter of a percentile of 10,000 samples: √(0.95 · 0.05/10⁴)/φ(1.645) = 0.021 of σ; four times that.
+    assert taken["contact 0 force", "impact factor (95 %)"] == pytest.approx(1 + 1.6449 * 0.2, abs=4 * 0.021 * 0.2)
 
 
 @pytest.mark.parametrize("coefficient", [0.0, 0.1, 0.3])
@@ -299,6 +319,7 @@ def test_usual_measures_are_among_all():
             "contacts lie up to 2.5 m apart, and the record covers 0.38 m",
         ),
         (lambda r: mf.road_wear(r, percentile=101.0), "percentile must lie between 0 and 100 %"),
+        (lambda r: mf.impact_factor(r, percentile=101.0), r"percentile must lie between 0 and 100 %, got 101\.0 %"),
         (lambda r: mf.road_stress_factor(-0.1), "coefficient must be at least zero throughout, got -0.1"),
         (lambda r: assess(r, contacts=[2]), "contacts must be among 0, 1, got 2"),
         (lambda r: assess(r, dofs=["nose"]), "dofs must be among body, pitch, got 'nose'"),
@@ -330,3 +351,16 @@ def test_usual_measures_are_among_all():
 def test_refusals(call, message):
     with pytest.raises(ValueError, match=message):
         call(travelled(amplitude=1e3))
+
+
+def test_every_measure_has_a_caption_and_a_name_of_its_own():
+    for table in TABLES:
+        of_history = [entry.history.name for entry in table.entries if entry.history]
+        of_random = [
+            (taken.quantity or table.quantity, taken.name) for entry in table.entries if (taken := entry.random)
+        ]
+        assert len(set(of_history)) == len(of_history)
+        assert len(set(of_random)) == len(of_random)
+        assert not of_history or table.quantity in CAPTIONS
+        assert {quantity for quantity, _ in of_random} <= RANDOM_CAPTIONS.keys()
+        assert all(entry.history or entry.random for entry in table.entries)

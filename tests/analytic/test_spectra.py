@@ -18,6 +18,11 @@ SPECTRA = {
     "iso, w 2": mf.IsoRoad.of_class("B"),
     "iso, w 1": mf.IsoRoad.of_class("B", waviness=1.0),
     "iso, w 2.6": mf.IsoRoad.of_class("B", waviness=2.6),
+    "two slopes": mf.TwoSlopeRoad.of_class("average principal road"),
+    "two slopes, one below, a logarithm above": mf.TwoSlopeRoad(
+        roughness=1e-6, waviness=(3.0, 1.0), band=(0.1, 4.0)
+    ),
+    "two slopes, short waves only": mf.TwoSlopeRoad(roughness=1e-6, band=(0.2, 4.0)),
     **{f"fra {n}": mf.FraTrack.of_class(n) for n in (1, 6)},
     **{f"fryba {n}": mf.FrybaTrack.of_class(n) for n in (1, 6)},
     **{f"german {level}": mf.GermanTrack.of_class(level) for level in ("low", "high")},
@@ -38,7 +43,12 @@ def test_variance_is_the_integral_of_the_density(name):
     spectrum = SPECTRA[name]
     low, high = spectrum.band
     thirds = 10 ** (np.arange(4, 25) / 10 + 0.05)
-    breaks = [*mf.ChineseBallastlessTrack._BREAKS, *np.ravel(getattr(spectrum, "spatial_frequency", [])), *thirds]
+    breaks = [
+        1 / (2 * np.pi),
+        *mf.ChineseBallastlessTrack._BREAKS,
+        *np.ravel(getattr(spectrum, "spatial_frequency", [])),
+        *thirds,
+    ]
     places = np.unique(np.clip([low, *np.geomspace(low, high, 9), *breaks, high], low, high))
     places = np.array([low, *places[1:][np.diff(np.log(places)) > 1e-9]])
     # Beyond a breakpoint the formula of the next piece holds: stay within each by one part in 1e13.
@@ -100,6 +110,25 @@ def test_sncf_deviates_as_german_track_does():
     assert mf.SncfTrack.of_class("poor").density(np.array([0.0489]))[0] == pytest.approx(
         308e-6 * 1.79 / 8, rel=1e-12
     )
+
+
+def test_two_slopes_meet_and_each_is_its_power():
+    """By hand: a decade below n₀ the density is 10^w₁ times, a decade above 10^−w₂ times that at n₀, 1 rad/m."""
+    road = mf.TwoSlopeRoad.of_class("good motorway")
+    found = road.density(np.array([0.1, 1.0, 10.0]) / (2 * np.pi))
+    assert found == pytest.approx([16e-6 * 10**1.945, 16e-6, 16e-6 * 10**-1.36], rel=1e-12)
+    # With equal slopes it is the spectrum of ISO 8608, stated at another frequency.
+    level = mf.TwoSlopeRoad(roughness=1e-6, waviness=(2.0, 2.0))
+    iso = mf.IsoRoad(roughness=1e-6 / (0.2 * np.pi) ** 2)
+    n = np.geomspace(0.01, 10.0, 20)
+    assert level.density(n) == pytest.approx(iso.density(n), rel=1e-12)
+    assert level.variance_below(n) == pytest.approx(iso.variance_below(n), rel=1e-12)
+    # Classes of one type lie a factor of four apart; exponents may be others than the means.
+    rough = [
+        mf.TwoSlopeRoad.of_class(f"{quality} minor road").roughness for quality in ("average", "poor", "very poor")
+    ]
+    assert rough == pytest.approx([64e-6, 256e-6, 1024e-6])
+    assert mf.TwoSlopeRoad.of_class("poor minor road", waviness=(2.0, 2.0)).waviness == (2.0, 2.0)
 
 
 def test_chinese_spectrum_in_the_units_of_its_source():
@@ -185,6 +214,12 @@ def test_measured_rails_realised_have_the_measured_levels():
             r"must be one of low, high, got \[\]; band\[1\] must be positive",
         ),
         (lambda: mf.SncfTrack.of_class("bad"), "track_class must be one of good, poor, got 'bad'"),
+        (
+            lambda: mf.TwoSlopeRoad.of_class("bad road"),
+            "road_class must be one of very good motorway, .*got 'bad road'",
+        ),
+        (lambda: mf.TwoSlopeRoad(roughness=1e-6, waviness=2.0), "waviness must be two numbers, got 2.0"),
+        (lambda: mf.TwoSlopeRoad(roughness=1e-6, waviness=(2.0, 11.0)), "waviness must lie within ±10, got 11.0"),
         (lambda: mf.SncfTrack(roughness=0.0), r"roughness must be positive, got 0\.0 m³"),
         (lambda: mf.FraTrack(roughness=1e-6, band=(0.2, 0.1)), "band must be two increasing frequencies"),
         (lambda: mf.ChineseBallastlessTrack(band=(0.0, 1.0)), r"band\[0\] must be positive, got 0\.0 cycle/m"),

@@ -93,6 +93,8 @@ FAULTS = [
         "damage beyond a Gaussian process", "metrics/fatigue.py", "if not 0 < share <= 1 + rounding:", "if False:"
     ),
     Fault("damage of a negative life", "metrics/fatigue.py", "if not 0 < share <= 1", "if not share <= 1"),
+    Fault("impact without the load", "metrics/impact.py", "high = load +", "high ="),
+    Fault("median impact of a random road", "metrics/impact.py", "inv_cdf(0.95)", "inv_cdf(0.5)"),
     Fault("load that hangs divides", "metrics/loads.py", "where=load > 0)", "where=load != 0)"),
     Fault("load that hangs wears", "metrics/loads.py", "max(static[contact], 0.0)", "static[contact]"),
     Fault("points beyond memory", "metrics/loads.py", "(last - first) / spacing * (bytes", "0 * (bytes"),
@@ -122,9 +124,9 @@ FAULTS = [
     # What is left out, told apart, cut and refused.
     Fault(
         "vehicle that never runs in",
-        "metrics/measures.py",
-        "whole, result = result, result.isel",
-        "whole, _ = result, result.isel",
+        "metrics/entry.py",
+        "samples_before(self.since, self.step, self.whole",
+        "samples_before(0.0, self.step, self.whole",
     ),
     Fault(
         "weighting that starts anew",
@@ -132,6 +134,6 @@ FAULTS = [
         "values = weighted(acceleration, time_step, weighting)[first:]",
         "values = weighted(np.asarray(acceleration)[first:], time_step, weighting)",
     ),
-    Fault("limit the other way", "metrics/measures.py", "if name in felt.exceeded", "if name not in felt.exceeded"),
-    Fault("one refusal for all", "metrics/measures.py", "if common_points(result).size:", "if True:"),
+    Fault("limit the other way", "metrics/listed.py", "if name in felt.exceeded", "if name not in felt.exceeded"),
+    Fault("one refusal for all", "metrics/entry.py", "if common_points(self.result).size", "if True"),
 ]

@@ -8,6 +8,10 @@ FAULTS = [
     # Road.
     Fault("two-sided density", "roughness/realisation.py", "np.sqrt(variance / 2)", "np.sqrt(variance)"),
     Fault("arithmetic class centres", "roughness/spectra/iso.py", "16e-6 * 4.0**n", "20e-6 * 4.0**n"),
+    Fault("slopes exchanged", "roughness/spectra/two_slope.py", "MEETING, long, short)", "MEETING, short, long)"),
+    Fault(
+        "slopes overlap", "roughness/spectra/two_slope.py", "(np.minimum, np.maximum)", "(np.minimum, np.minimum)"
+    ),
     Fault("limits at the centres", "roughness/spectra/iso.py", "roughness < 2 * centre", "roughness < centre"),
     Fault(
         "waviness ignored",
@@ -171,14 +175,16 @@ FAULTS = [
     Fault("right for left in a grid", "roughness/formats/crg.py", "road.surface_z()[:, ::-1]", "road.surface_z()"),
     Fault("slope and banking left out", "roughness/formats/crg.py", "road.surface_z()[", "road.z["),
     Fault("first path of an ERD file twice", "roughness/formats/erd.py", "values[:, n]", "values[:, 0]"),
+    Fault(
+        "columns for rows", "roughness/formats/numpy_file.py", '"F" if self.by_columns', '"C" if self.by_columns'
+    ),
+    Fault("bombs unpacked", "roughness/formats/numpy_file.py", "> UNPACKING.most(len(data))", "> np.inf"),
     Fault("sphere for the ellipsoid", "roughness/formats/gpx.py", "6.694_379_990_141e-3", "0.0"),
     Fault("paths between sections", "roughness/files.py", "rights + share * (lefts - rights)", "rights"),
     Fault("formats not told", "roughness/files.py", ".replace(words, instead)", '.replace(words, "")'),
     Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
     Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
-    Fault(
-        "high pass of first order", "roughness/steps/high_passed.py", "butter(FILTER.gentle, 1 /", "butter(1, 1 /"
-    ),
+    Fault("high pass of first order", "roughness/steps/base.py", "order=FILTER.gentle", "order=1"),
     Fault(
         "resampled with aliases",
         "roughness/steps/resampled.py",
@@ -190,6 +196,7 @@ FAULTS = [
         "mirror doubles its end", "roughness/steps/mirrored.py", "% (2 * last) - last", "% (2 * last + 1) - last"
     ),
     Fault("fault by the name in Python", "roughness/preparation.py", "key_of.get(fault.name, ", "("),
+    Fault("short for long waves", "roughness/steps/low_passed.py", '"shorter", wavelength', '"longer", wavelength'),
     Fault("steps exclude nothing", "roughness/preparation.py", "if step.without in asked and", "if"),
     Fault("steps forgotten", "roughness/steps/base.py", "steps=(*profile.steps, sentence)", "steps=(sentence,)"),
     Fault(

@@ -10,6 +10,7 @@ from movingfrf._basics import wording
 from movingfrf._basics.welch import FLAT
 from movingfrf._basics.wording import number, plain
 from movingfrf.guideways.guideway import Guideway
+from movingfrf.metrics.listed import CAPTIONS
 from movingfrf.metrics.measures import measures
 from movingfrf.metrics.spectra import elevation_spectrum
 from movingfrf.reports import plots
@@ -24,17 +25,6 @@ from movingfrf.roughness.fitting import fit_iso
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-COUPLED_CAPTIONS = {
-    "force": "Contact forces. The dynamic part is what the roughness adds to the static level; the dynamic load "
-    "coefficient is its rms over the static force.",
-    "deflection": "Deflections of the road under the contacts, positive down.",
-    "acceleration": "Accelerations about the steady state, as they are and as people feel them: weighted with Wk "
-    "of ISO 2631-1.",
-    "angular acceleration": "Angular accelerations about the steady state, as they are and weighted with We of "
-    "ISO 2631-1.",
-}
 
 
 def coupled_summary(result: xr.Dataset) -> str:
@@ -97,7 +87,7 @@ def _stepped(result: xr.Dataset) -> list[str]:
 
 def coupled_tables(result: xr.Dataset) -> list[Table]:
     """Put the measures of the response into tables."""
-    return measure_tables(result, measures(result), COUPLED_CAPTIONS)
+    return measure_tables(result, measures(result), CAPTIONS)
 
 
 def of_coupled(result: xr.Dataset, guideway: Guideway | None) -> list[Illustration]:

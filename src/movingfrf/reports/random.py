@@ -11,6 +11,7 @@ import numpy as np
 from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import number, plain
+from movingfrf.metrics.listed import RANDOM_CAPTIONS
 from movingfrf.reports.axes import SPECTRUM_STYLE, decimated, draw_classes, legend_above
 from movingfrf.reports.curves import PALETTE, Curve, contact_curves, distinct, left_out_dofs, readable, telling
 from movingfrf.reports.figures import SIZE, Illustration, blank, drawing, illustrated
@@ -27,15 +28,6 @@ if TYPE_CHECKING:
 
 # Frequencies of the figures [600 to 5000: more than a screen resolves, fewer than make a page heavy].
 DRAWN_FREQUENCIES = 1200
-
-RANDOM_CAPTIONS = {
-    "force": "Contact forces: the static one, and the dynamic one that the roughness adds.",
-    "load": "Total contact forces, static and dynamic, and what they do to the road. The dynamic load coefficient "
-    "is the rms of the dynamic force over the static one.",
-    "deflection": "Deflections of the road under the contacts; rms and peak of the dynamic part.",
-    "acceleration": "Accelerations about the steady state.",
-    "angular acceleration": "Angular accelerations about the steady state.",
-}
 
 
 def render(

@@ -11,7 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ParameterError, checking, option, shown
 from movingfrf.roughness.formats import columns as text
-from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf
+from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
 from movingfrf.roughness.profile import Profile
 
@@ -19,7 +19,16 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 # All formats; text in columns last, since any text might be that.
 FORMATS = {
-    form.name: form for form in (crg.FORMAT, erd.FORMAT, matlab.FORMAT, netcdf.FORMAT, gpx.FORMAT, text.FORMAT)
+    form.name: form
+    for form in (
+        crg.FORMAT,
+        erd.FORMAT,
+        matlab.FORMAT,
+        netcdf.FORMAT,
+        numpy_file.FORMAT,
+        gpx.FORMAT,
+        text.FORMAT,
+    )
 }
 
 

@@ -19,6 +19,7 @@ from movingfrf.roughness.spectra.iso import IsoRoad
 from movingfrf.roughness.spectra.rail import ChineseBallastlessTrack, FraTrack, FrybaTrack, GermanTrack, SncfTrack
 from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.roughness.spectra.tabulated import TabulatedSpectrum, ThirdOctaveSpectrum, iso3095_limit
+from movingfrf.roughness.spectra.two_slope import TwoSlopeRoad
 from movingfrf.scenarios.kind import Kind, chosen, keys_of
 
 
@@ -107,6 +108,7 @@ def side_by_side(*, interval: tuple[float, float], parts: Sequence[Road]) -> Roa
 # Kinds of spectra.
 SPECTRA = (
     by_class(IsoRoad),
+    by_class(TwoSlopeRoad),
     by_class(FraTrack),
     by_class(FrybaTrack),
     by_class(GermanTrack),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -36,7 +36,7 @@ class Filter:
     # or 3 % are left of waves of two steps.
     shortest_wave: float = 2.5
     sharp: int = 8  # order of the filter that does so
-    gentle: int = 2  # order of the one that takes out long waves
+    gentle: int = 2  # order of those that take out waves because they were asked to
     settling: float = 2.0  # wavelengths that it goes on past either end, the profile turned about its end [1 to 8]
 
 
@@ -74,3 +74,35 @@ def extended(
     """Make a longer profile of stations of columns, each named by its place."""
     distance = profile.stations[0] + step * np.arange(count)
     return changed(profile, sentence, distance=distance, elevation=like(profile, columns[place]))
+
+
+def filtered(
+    columns: FloatArray, step: float, *, wavelength: float, kind: Literal["highpass", "lowpass"], order: int
+) -> FloatArray:
+    """Take out waves longer or shorter than a length by a Butterworth filter, both ways: none is shifted."""
+    from scipy.signal import butter, sosfiltfilt
+
+    past = min(len(columns) - 1, int(np.ceil(FILTER.settling * wavelength / step)))
+    sections = butter(order, 1 / wavelength, kind, fs=1 / step, output="sos")
+    kept: FloatArray = sosfiltfilt(sections, columns, axis=0, padlen=past)
+    return kept
+
+
+def without_waves(profile: Profile, which: Literal["longer", "shorter"], wavelength: float) -> Profile:
+    """Take waves longer or shorter than a length [m] out of a profile by the gentle filter, and say so."""
+    with checking() as check:
+        check.positive("wavelength", wavelength, "m")
+    step = profile.require_even("a filter")
+    length = profile.stations[-1] - profile.stations[0]
+    with checking() as check:
+        if not 4 * step <= wavelength <= length:
+            check.refuse(
+                "wavelength",
+                f"must lie between four steps and the length of the profile, {4 * step:g} and {length:g} m, got "
+                f"{wavelength:g} m",
+            )
+    kind: Literal["highpass", "lowpass"] = "highpass" if which == "longer" else "lowpass"
+    kept = filtered(profile.columns, step, wavelength=wavelength, kind=kind, order=FILTER.gentle)
+    how = f"Butterworth of order {FILTER.gentle}, both ways, half left there"
+    done = f"took out waves {which} than {wavelength:g} m ({how})"
+    return changed(profile, done, elevation=like(profile, kept))

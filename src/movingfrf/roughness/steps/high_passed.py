@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from movingfrf._basics.checks import checking
 from movingfrf.roughness.profile import Profile
-from movingfrf.roughness.steps.base import FILTER, Step, changed, like
+from movingfrf.roughness.steps.base import Step, without_waves
 
 
 def high_passed(profile: Profile, *, wavelength: float) -> Profile:
@@ -34,31 +31,14 @@ def high_passed(profile: Profile, *, wavelength: float) -> Profile:
 
     Examples
     --------
+    >>> import numpy as np
     >>> x = np.arange(0.0, 400.0, 0.1)
     >>> road = Profile(x, np.sin(2 * np.pi * x / 40))
     >>> middle = high_passed(road, wavelength=40.0).elevation[1500:2500]
     >>> round(float(middle.max()), 2)
     0.5
     """
-    from scipy.signal import butter, sosfiltfilt
-
-    with checking() as check:
-        check.positive("wavelength", wavelength, "m")
-    step = profile.require_even("a filter")
-    length = profile.stations[-1] - profile.stations[0]
-    with checking() as check:
-        if not 4 * step <= wavelength <= length:
-            check.refuse(
-                "wavelength",
-                f"must lie between four steps and the length of the profile, {4 * step:g} and {length:g} m, got "
-                f"{wavelength:g} m",
-            )
-    past = min(len(profile.stations) - 1, int(np.ceil(FILTER.settling * wavelength / step)))
-    sections = butter(FILTER.gentle, 1 / wavelength, "highpass", fs=1 / step, output="sos")
-    kept = sosfiltfilt(sections, profile.columns, axis=0, padlen=past)
-    how = f"Butterworth of order {FILTER.gentle}, both ways, half left there"
-    done = f"took out waves longer than {wavelength:g} m ({how})"
-    return changed(profile, done, elevation=like(profile, kept))
+    return without_waves(profile, "longer", wavelength)
 
 
 STEP = Step(high_passed, {"high_pass": "wavelength"})

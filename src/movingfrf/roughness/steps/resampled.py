@@ -6,7 +6,7 @@ import numpy as np
 
 from movingfrf._basics.checks import checking
 from movingfrf.roughness.profile import SLACK, Profile
-from movingfrf.roughness.steps.base import FILTER, Step, changed, like, require_room
+from movingfrf.roughness.steps.base import FILTER, Step, changed, filtered, like, require_room
 
 
 def resampled(profile: Profile, *, step: float) -> Profile:
@@ -60,16 +60,13 @@ def resampled(profile: Profile, *, step: float) -> Profile:
 
 def _without_short_waves(profile: Profile, step: float, wavelength: float) -> Profile:
     """Even stations at the profile's own step, and waves shorter than a length filtered out."""
-    from scipy.signal import butter, sosfiltfilt
-
     stations, columns = profile.stations, profile.columns
     if profile.even_step() is None:
         intervals = max(round((stations[-1] - stations[0]) / step), 4)
         stations = np.linspace(stations[0], stations[-1], intervals + 1)
         columns = np.stack([profile.along(path)(stations) for path in range(profile.paths)], axis=1)
-    past = min(len(stations) - 1, int(np.ceil(FILTER.settling * wavelength / step)))
-    sections = butter(FILTER.sharp, 1 / wavelength, "lowpass", fs=1 / step, output="sos")
-    return Profile(stations, like(profile, sosfiltfilt(sections, columns, axis=0, padlen=past)))
+    kept = filtered(columns, step, wavelength=wavelength, kind="lowpass", order=FILTER.sharp)
+    return Profile(stations, like(profile, kept))
 
 
 STEP = Step(resampled, {"step": "step"})

@@ -1,0 +1,64 @@
+"""Impact factor: how far the high contact forces lie above the static one."""
+
+from __future__ import annotations
+
+from statistics import NormalDist
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import checking
+from movingfrf.metrics.entry import Entry, OfHistory, OfRandom
+from movingfrf.metrics.loads import check_coupled
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def impact_factor(result: xr.Dataset, *, percentile: float = 95.0) -> FloatArray:
+    """Total force that each contact exceeds for a small share of the time only, over its load in steady travel.
+
+    Of a Gaussian force the factor is 1 + z s, s the dynamic load coefficient and z = 1.645 for 95 %.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        The coupled response of a vehicle, from `simulate`, `cdfm` or `sim`.
+    percentile : float
+        Share of the time for which the force is not exceeded [%].
+
+    Returns
+    -------
+    ndarray, shape (contact,)
+        Ratios; inf for a contact that bears nothing in steady travel.
+
+    Raises
+    ------
+    ValueError
+        If the result has no contact forces, or the percentile does not lie between 0 and 100.
+
+    References
+    ----------
+    P. F. Sweatman, A study of dynamic wheel forces in axle group suspensions of heavy vehicles, Special Report 27,
+    Australian Road Research Board, 1983; as quoted in the literature on it.
+    """
+    with checking() as check:
+        check_coupled(check, result)
+        if not 0 <= check.finite("percentile", percentile, "%") <= 100:
+            check.refuse("percentile", f"must lie between 0 and 100 %, got {percentile!r} %")
+    load = result.static_load.values
+    high = load + np.percentile(result.contact_force.values, percentile, axis=0)
+    return np.divide(high, load, out=np.full(load.shape, np.inf), where=load > 0)
+
+
+ENTRY = Entry(
+    "1",
+    OfHistory("impact factor (95 %)", lambda of, n: impact_factor(of.result)[n], "Sweatman 1983"),
+    OfRandom(
+        "impact factor (95 %)",
+        lambda of, n: 1 + NormalDist().inv_cdf(0.95) * of.value("dynamic_load_coefficient", n),
+        "Sweatman 1983",
+        "load",
+    ),
+)
