@@ -14,7 +14,19 @@ from numba import njit
 
 from movingfrf.stepping.exchange import HUGE, TINY
 from movingfrf.stepping.finite_guideway import ELEMENT_ROUNDING
-from movingfrf.stepping.kernels import FAST, HALF_WIDTH, band_product, dot, eliminate, shape_functions, solve
+from movingfrf.stepping.kernels import (
+    FAST,
+    HALF_WIDTH,
+    balanced,
+    band_product,
+    dot,
+    eliminate,
+    freed,
+    met,
+    shape_functions,
+    solve,
+    taken,
+)
 
 
 @njit(cache=True, fastmath=FAST)
@@ -46,8 +58,8 @@ def iterate(matrix, right, force, tolerance, most):
 
 @njit(cache=True, fastmath=FAST)
 def march(
-    # Scheme: step, β, γ, α_m, α_f.
-    scheme,
+    # `HalfStep`: the rule of the scheme, and the vehicle.
+    half,
     # Guideway: bands of mass, damping and stiffness (4, n), factors of the effective matrix, rows of its inverse.
     mass,
     damping,
@@ -66,15 +78,6 @@ def march(
     observers,
     speed,
     observers_travel,
-    # Vehicle: inverses of its effective and its own mass, its matrices, map to the contacts; springs, dashpots.
-    vehicle_inverse,
-    mass_inverse,
-    vehicle_mass,
-    vehicle_damping,
-    vehicle_stiffness,
-    contact_map,
-    springs,
-    dashpots,
     # What happens in each step: elevation and its rate, prescribed forces (one row: constant).
     roughness,
     rate,
@@ -99,38 +102,27 @@ def march(
     acceleration_out,
 ):
     """March from `begin` to `end`; returns the step that did not converge (or −1), and the most iterations."""
-    dt, beta, gamma, alpha_m, alpha_f = scheme[0], scheme[1], scheme[2], scheme[3], scheme[4]
+    dt, free_u, free_v, lift_u, lift_v, keep, alpha_m, alpha_f = half.rule
     n = guideway.shape[1]
     k = contacts.size
     m = body.shape[1]
     last = number.size // 2 - 2
     reach = inverse.shape[1]
-    keep = 1.0 - alpha_f
     u, v, a = guideway[0], guideway[1], guideway[2]
-    z, dz, ddz = body[0], body[1], body[2]
     at_u, at_v, right = np.empty(n), np.empty(n), np.empty(n)
-    free_z, free_dz, push, free_ddz = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+    free, push, acceleration = np.empty((3, m)), np.empty(m), np.empty(m)
     middle = np.empty(core.shape[0])
     places, before = np.zeros((k, 4), np.int64), np.zeros((k, 4), np.int64)
     values, slopes, values_before = np.zeros((k, 4)), np.zeros((k, 4)), np.zeros((k, 4))
     # Accelerations at the unknowns around each contact: free, and per unit force at each contact.
     free_a = np.empty((k, 4))
     per_force = np.empty((k, 4, k))
+    # Of the guideway under each contact: deflection and its rate, without the forces of a step and per force.
+    down, sinking, moves, moving = np.empty(k), np.empty(k), np.empty((k, k)), np.empty((k, k))
     matrix, gap, force = np.empty((k, k)), np.empty(k), np.empty(k)
     here, here_values, here_slopes = np.zeros(4, np.int64), np.zeros(4), np.zeros(4)
-    # The vehicle's acceleration per contact force, and what that moves at the contacts.
-    lifted = np.zeros((m, k))
-    for i in range(m):
-        for s in range(k):
-            for p in range(m):
-                lifted[i, s] -= keep * vehicle_inverse[i, p] * contact_map[s, p]
-    own = np.zeros((k, k))
     for j in range(k):
-        for s in range(k):
-            for i in range(m):
-                own[j, s] += contact_map[j, i] * lifted[i, s]
-    lift_u, lift_v = beta * dt * dt, gamma * dt
-    for j in range(k):
+        gap[j] = acting[j] - loads[min(begin, loads.shape[0] - 1), j]
         shape_functions(
             contacts[j] + speed * dt * (origin + begin) - shifted[0] * mesh[1],
             mesh[0],
@@ -163,10 +155,9 @@ def march(
                 contacts[j] + travelled, mesh[0], mesh[1], last, number, places[j], values[j], slopes[j]
             )
         # What the guideway would do without the contact forces of this step.
-        free_a_u, free_a_v = (0.5 - beta) * dt * dt, (1.0 - gamma) * dt
         for i in range(n):
-            at_u[i] = u[i] + keep * (dt * v[i] + free_a_u * a[i])
-            at_v[i] = v[i] + keep * free_a_v * a[i]
+            at_u[i] = u[i] + keep * (dt * v[i] + free_u * a[i])
+            at_v[i] = v[i] + keep * free_v * a[i]
         band_product(stiffness, damping, at_u, at_v, right)
         if alpha_m != 0.0:
             for i in range(n):
@@ -182,26 +173,10 @@ def march(
                 if alpha_f != 0.0 and before[j, q] >= 0:
                     right[before[j, q]] += alpha_f * values_before[j, q] * acting[j]
         if m:
-            for i in range(m):
-                free_z[i] = z[i] + dt * dz[i] + free_a_u * ddz[i]
-                free_dz[i] = dz[i] + free_a_v * ddz[i]
-            for i in range(m):
-                total = 0.0
-                for p in range(m):
-                    total -= vehicle_stiffness[i, p] * (keep * free_z[p] + alpha_f * z[p])
-                    total -= vehicle_damping[i, p] * (keep * free_dz[p] + alpha_f * dz[p])
-                    total -= alpha_m * vehicle_mass[i, p] * ddz[p]
-                if alpha_f != 0.0:
-                    previous = min(step - 1, loads.shape[0] - 1)
-                    for s in range(k):
-                        total -= alpha_f * contact_map[s, i] * (acting[s] - loads[previous, s])
-                push[i] = total
-            for i in range(m):
-                total = 0.0
-                for p in range(m):
-                    total += vehicle_inverse[i, p] * push[p]
-                free_ddz[i] = total
-            # Contact forces: F = k (B z − w + r) + c (B ż − ẇ − v w′ + ṙ), each linear in all of them.
+            freed(half, body, gap, push, free)
+            for j in range(k):
+                force[j] = gap[j]
+            # Contact forces: the rate of the deflection under a contact is ẇ + v w′.
             for j in range(k):
                 for q in range(4):
                     place = places[j, q]
@@ -218,27 +193,20 @@ def march(
                 w = dw = 0.0
                 for q in range(4):
                     place = places[j, q]
-                    moved = u[place] + dt * v[place] + free_a_u * a[place] + lift_u * free_a[j, q]
+                    moved = u[place] + dt * v[place] + free_u * a[place] + lift_u * free_a[j, q]
                     w += values[j, q] * moved
-                    dw += values[j, q] * (v[place] + free_a_v * a[place] + lift_v * free_a[j, q])
+                    dw += values[j, q] * (v[place] + free_v * a[place] + lift_v * free_a[j, q])
                     dw += speed * slopes[j, q] * moved
-                up = dup = 0.0
-                for i in range(m):
-                    up += contact_map[j, i] * (free_z[i] + lift_u * free_ddz[i])
-                    dup += contact_map[j, i] * (free_dz[i] + lift_v * free_ddz[i])
-                gap[j] = springs[j] * (up - w + roughness[step, j]) + dashpots[j] * (dup - dw + rate[step, j])
                 for s in range(k):
                     yields = yielding = 0.0
                     for q in range(4):
                         yields += values[j, q] * per_force[j, q, s]
                         yielding += slopes[j, q] * per_force[j, q, s]
-                    matrix[j, s] = springs[j] * lift_u * (yields - own[j, s]) + dashpots[j] * (
-                        lift_v * (yields - own[j, s]) + speed * lift_u * yielding
-                    )
-                matrix[j, j] += 1.0
+                    moves[j, s] = lift_u * yields
+                    moving[j, s] = lift_v * yields + speed * lift_u * yielding
+                down[j], sinking[j] = w, dw
+            met(half, free, step, roughness, rate, down, sinking, moves, moving, matrix, gap)
             if tolerance > 0.0:
-                for j in range(k):
-                    force[j] = acting[j] - loads[min(step - 1, loads.shape[0] - 1), j]
                 count = iterate(matrix, gap, force, tolerance, most)
                 if count < 0:
                     return step, worst
@@ -253,29 +221,18 @@ def march(
                 gap[j] = 0.0
         solve(rows, columns, core, right, middle)
         for i in range(n):
-            u[i] += dt * v[i] + free_a_u * a[i] + lift_u * right[i]
-            v[i] += free_a_v * a[i] + lift_v * right[i]
+            u[i] += dt * v[i] + free_u * a[i] + lift_u * right[i]
+            v[i] += free_v * a[i] + lift_v * right[i]
             a[i] = right[i]
+        taken(half, body, free, gap)
         for i in range(m):
-            ddz[i] = free_ddz[i]
-            for s in range(k):
-                ddz[i] += lifted[i, s] * gap[s]
-            z[i] = free_z[i] + lift_u * ddz[i]
-            dz[i] = free_dz[i] + lift_v * ddz[i]
-            motion_out[step, i] = z[i]
-            acceleration_out[step, i] = ddz[i]
+            motion_out[step, i] = body[0, i]
+            acceleration_out[step, i] = body[2, i]
         if alpha_m != 0.0 or alpha_f != 0.0:
             # What such a scheme carries as acceleration belongs to a later instant; that of this one balances.
+            balanced(half, body, gap, push, acceleration)
             for i in range(m):
-                push[i] = 0.0
-                for p in range(m):
-                    push[i] -= vehicle_stiffness[i, p] * z[p] + vehicle_damping[i, p] * dz[p]
-                for s in range(k):
-                    push[i] -= contact_map[s, i] * gap[s]
-            for i in range(m):
-                acceleration_out[step, i] = 0.0
-                for p in range(m):
-                    acceleration_out[step, i] += mass_inverse[i, p] * push[p]
+                acceleration_out[step, i] = acceleration[i]
         for j in range(k):
             acting[j] = gap[j] + loads[prescribed, j]
             w = 0.0
@@ -305,16 +262,10 @@ def march(
 
 @njit(cache=True, fastmath=FAST)
 def convolve(
-    dt,
+    half,
     now,
     backwards,
     begun,
-    vehicle_inverse,
-    vehicle_damping,
-    vehicle_stiffness,
-    contact_map,
-    springs,
-    dashpots,
     roughness,
     rate,
     state,
@@ -326,40 +277,22 @@ def convolve(
     acceleration_out,
 ):
     """Convolve and step from `begin` to `end`; forces and deflections are (contact, time)."""
-    k = springs.size
+    k = now.shape[0]
     m = state.shape[1]
     memory = backwards.shape[2]
-    z, dz, ddz = state[0], state[1], state[2]
-    lift_u, lift_v = 0.25 * dt * dt, 0.5 * dt
-    lifted, own = np.zeros((m, k)), np.zeros((k, k))
-    for i in range(m):
-        for s in range(k):
-            for p in range(m):
-                lifted[i, s] -= vehicle_inverse[i, p] * contact_map[s, p]
-    for j in range(k):
-        for s in range(k):
-            for i in range(m):
-                own[j, s] += contact_map[j, i] * lifted[i, s]
-    free_z, free_dz, free_ddz, push = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
-    known, gap, matrix = np.empty(k), np.empty(k), np.empty((k, k))
+    dt = half.rule.step
+    free, push = np.empty((3, m)), np.empty(m)
+    known, sinking, moving = np.empty(k), np.empty(k), np.empty((k, k))
+    gap, matrix = force_out[:, begin].copy(), np.empty((k, k))
     for step in range(begin + 1, end + 1):
         past = min(step, memory)
-        for i in range(m):
-            free_z[i] = z[i] + dt * dz[i] + lift_u * ddz[i]
-            free_dz[i] = dz[i] + lift_v * ddz[i]
-        for i in range(m):
-            total = 0.0
-            for p in range(m):
-                total -= vehicle_stiffness[i, p] * free_z[p] + vehicle_damping[i, p] * free_dz[p]
-            push[i] = total
-        for i in range(m):
-            total = 0.0
-            for p in range(m):
-                total += vehicle_inverse[i, p] * push[p]
-            free_ddz[i] = total
-        a, b, c = 1.5, -2.0, 0.5
+        freed(half, state, gap, push, free)
+        a, b, c = 1.5 / dt, -2.0 / dt, 0.5 / dt
         if step == 1:
-            a, b, c = 1.0, -1.0, 0.0
+            a, b, c = 1.0 / dt, -1.0 / dt, 0.0
+        for j in range(k):
+            for s in range(k):
+                moving[j, s] = a * now[j, s]
         for j in range(k):
             total = 0.0
             for s in range(k):
@@ -368,25 +301,13 @@ def convolve(
                 total += begun[j, step]
             known[j] = total
             older = b * deflection_out[j, step - 1] + c * deflection_out[j, max(step - 2, 0)]
-            up = dup = 0.0
-            for i in range(m):
-                up += contact_map[j, i] * (free_z[i] + lift_u * free_ddz[i])
-                dup += contact_map[j, i] * (free_dz[i] + lift_v * free_ddz[i])
-            gap[j] = springs[j] * (up - total + roughness[step, j])
-            gap[j] += dashpots[j] * (dup - (a * total + older) / dt + rate[step, j])
-            for s in range(k):
-                matrix[j, s] = springs[j] * (now[j, s] - lift_u * own[j, s])
-                matrix[j, s] += dashpots[j] * (a / dt * now[j, s] - lift_v * own[j, s])
-            matrix[j, j] += 1.0
+            sinking[j] = a * total + older
+        met(half, free, step, roughness, rate, known, sinking, now, moving, matrix, gap)
         eliminate(matrix, gap)
+        taken(half, state, free, gap)
         for i in range(m):
-            ddz[i] = free_ddz[i]
-            for s in range(k):
-                ddz[i] += lifted[i, s] * gap[s]
-            z[i] = free_z[i] + lift_u * ddz[i]
-            dz[i] = free_dz[i] + lift_v * ddz[i]
-            motion_out[i, step] = z[i]
-            acceleration_out[i, step] = ddz[i]
+            motion_out[i, step] = state[0, i]
+            acceleration_out[i, step] = state[2, i]
         for j in range(k):
             w = known[j]
             for s in range(k):

@@ -18,11 +18,11 @@ from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.results.labels import COUPLED, LOADED, labelled
 from movingfrf.roughness.profile import Profile
 from movingfrf.stepping.coupled import seen_in_time
-from movingfrf.stepping.exchange import numba_is_there
-from movingfrf.stepping.marching import STRIDE
+from movingfrf.stepping.half_step import HalfStep
+from movingfrf.stepping.marching import STRIDE, numba_is_there
 from movingfrf.stepping.requirements import require_kinds
 from movingfrf.stepping.schemes import SCHEMES
-from movingfrf.stepping.tie import Tie, stiffness_at_rest, tie_of
+from movingfrf.stepping.tie import stiffness_at_rest, tie_of
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -127,18 +127,16 @@ def duhamel(
     state = np.zeros((3, len(tie.mass)))
     # The elevation may begin with a jump: forces act from t = 0 on, the first one by half of its hat.
     first = tie.springs * excitation.roughness[0] + tie.dashpots * excitation.rate[0]
-    state[2] = -np.linalg.solve(tie.mass, tie.contact_map.T @ first)
+    half = HalfStep.of(tie, SCHEMES["average_acceleration"].over(time_step))
+    state[2] = at_once = half.balanced(state, first)
     begun = np.einsum("tij,j->it", earlier[:, columns], first)
-    vehicle_inverse = np.linalg.inv(tie.mass + _lift(tie, time_step))
     for begin in range(0, samples - 1, STRIDE.steps):
         end = min(begin + STRIDE.steps, samples - 1)
         advance(
-            time_step,
+            half,
             kernel[:, :, 0].copy(),
             backwards,
             np.ascontiguousarray(begun),
-            vehicle_inverse,
-            *tie[1:],
             excitation.roughness,
             excitation.rate,
             state,
@@ -147,7 +145,8 @@ def duhamel(
             *record,
         )
         progress("convolving", end / (samples - 1))
-    record[0][:, 0], record[3][:, 0] = first, -np.linalg.solve(tie.mass, tie.contact_map.T @ first)
+    # The force at the start has been convolved apart.
+    record[0][:, 0], record[3][:, 0] = first, at_once
     force, deflection, motion, acceleration = (values.T for values in record)
     values = {
         **journey.coordinates(vehicle),
@@ -301,22 +300,11 @@ def weights(guideway: SampledGuideway, time_step: float) -> tuple[FloatArray, Fl
     return later + earlier, later, earlier
 
 
-def _lift(tie: Tie, time_step: float) -> FloatArray:
-    beta, gamma, _, _ = SCHEMES["average_acceleration"]
-    return gamma * time_step * tie.damping + beta * time_step**2 * tie.stiffness
-
-
 def _plain(
-    dt: float,
+    half: HalfStep,
     now: FloatArray,
     backwards: FloatArray,
     begun: FloatArray,
-    vehicle_inverse: FloatArray,
-    vehicle_damping: FloatArray,
-    vehicle_stiffness: FloatArray,
-    contact_map: FloatArray,
-    springs: FloatArray,
-    dashpots: FloatArray,
     roughness: FloatArray,
     rate: FloatArray,
     state: FloatArray,
@@ -328,12 +316,7 @@ def _plain(
     acceleration_out: FloatArray,
 ) -> None:
     """Convolve and step from `begin` to `end`; forces and deflections are (contact, time)."""
-    z, dz, ddz = state
-    memory = backwards.shape[2]
-    lift_u, lift_v = 0.25 * dt * dt, 0.5 * dt
-    lifted = -vehicle_inverse @ contact_map.T
-    own = contact_map @ lifted
-    eye = np.eye(len(springs))
+    dt, memory = half.rule.step, backwards.shape[2]
     for step in range(begin + 1, end + 1):
         past = min(step, memory)
         seen = force_out[:, step - past : step]
@@ -343,18 +326,13 @@ def _plain(
         # Velocity of the moving contact by backward differences; of second order once there are two steps behind.
         a, b, c = (1.5, -2.0, 0.5) if step > 1 else (1.0, -1.0, 0.0)
         older = b * deflection_out[:, step - 1] + c * deflection_out[:, max(step - 2, 0)]
-        free_z, free_dz = z + dt * dz + lift_u * ddz, dz + lift_v * ddz
-        free_ddz = -vehicle_inverse @ (vehicle_stiffness @ free_z + vehicle_damping @ free_dz)
-        gap = springs * (contact_map @ (free_z + lift_u * free_ddz) - known + roughness[step])
-        gap += dashpots * (contact_map @ (free_dz + lift_v * free_ddz) - (a * known + older) / dt + rate[step])
-        matrix = eye + springs[:, None] * (now - lift_u * own) + dashpots[:, None] * (a / dt * now - lift_v * own)
-        force = np.linalg.solve(matrix, gap)
-        ddz[:] = free_ddz + lifted @ force
-        z[:] = free_z + lift_u * ddz
-        dz[:] = free_dz + lift_v * ddz
+        free = half.freed(state, force_out[:, step - 1])
+        road, guideway = (roughness[step], rate[step]), (known, (a * known + older) / dt)
+        force = np.linalg.solve(*half.met(free, road, guideway, (now, a / dt * now)))
+        half.taken(state, free, force)
         force_out[:, step] = force
         deflection_out[:, step] = known + now @ force
-        motion_out[:, step], acceleration_out[:, step] = z, ddz
+        motion_out[:, step], acceleration_out[:, step] = state[0], state[2]
 
 
 def _compiled() -> Callable[..., None]:

@@ -37,10 +37,3 @@ def exchanged(
         if not size < HUGE:
             break
     return force, -1
-
-
-def numba_is_there() -> bool:
-    """Tell whether the compiled loops can be used."""
-    from importlib.util import find_spec
-
-    return find_spec("numba") is not None

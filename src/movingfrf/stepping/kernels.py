@@ -1,4 +1,4 @@
-"""Banded linear algebra of a guideway and a few unknowns, compiled."""
+"""Banded linear algebra of a guideway and a few unknowns, and the vehicle's half of a step, compiled."""
 
 from __future__ import annotations
 
@@ -220,3 +220,89 @@ def eliminate(matrix, right):
         for c in range(i + 1, n):
             right[i] -= matrix[i, c] * right[c]
         right[i] /= matrix[i, i]
+
+
+# The vehicle's half of a step; `half_step.HalfStep` has the same in NumPy and says what each does. They are put
+# into the loops that call them: as calls, or with an array taken out of the tuple more than once, a step took half
+# as long again.
+
+
+@njit(cache=True, fastmath=FAST, inline="always")
+def freed(half, body, before, push, free):
+    """Motion after the step without its contact forces, left in `free`; `push` is scratch (dof,)."""
+    step, free_u, free_v, lift_u, lift_v, keep, alpha_m, alpha_f = half.rule
+    mass, damping, stiffness, contact_map, _, _ = half.tie
+    inverse = half.inverse
+    m = body.shape[1]
+    for i in range(m):
+        free[0, i] = body[0, i] + step * body[1, i] + free_u * body[2, i]
+        free[1, i] = body[1, i] + free_v * body[2, i]
+    for i in range(m):
+        total = 0.0
+        for p in range(m):
+            total -= stiffness[i, p] * free[0, p] + damping[i, p] * free[1, p]
+        push[i] = total
+    if alpha_m != 0.0 or alpha_f != 0.0:
+        for i in range(m):
+            total = keep * push[i]
+            for p in range(m):
+                old = stiffness[i, p] * body[0, p] + damping[i, p] * body[1, p]
+                total -= alpha_f * old + alpha_m * mass[i, p] * body[2, p]
+            for s in range(before.size):
+                total -= alpha_f * contact_map[s, i] * before[s]
+            push[i] = total
+    for i in range(m):
+        total = 0.0
+        for p in range(m):
+            total += inverse[i, p] * push[p]
+        free[2, i] = total
+        free[0, i] += lift_u * total
+        free[1, i] += lift_v * total
+
+
+@njit(cache=True, fastmath=FAST, inline="always")
+def met(half, free, step, roughness, rate, down, sinking, yields, yielding, matrix, right):
+    """Contact forces of the step: matrix · F = right."""
+    _, _, _, contact_map, springs, dashpots = half.tie
+    fixed = half.fixed
+    k = right.size
+    for j in range(k):
+        up = rising = 0.0
+        for i in range(free.shape[1]):
+            up += contact_map[j, i] * free[0, i]
+            rising += contact_map[j, i] * free[1, i]
+        elastic = springs[j] * (up - down[j] + roughness[step, j])
+        right[j] = elastic + dashpots[j] * (rising - sinking[j] + rate[step, j])
+        for s in range(k):
+            matrix[j, s] = fixed[j, s] + springs[j] * yields[j, s] + dashpots[j] * yielding[j, s]
+
+
+@njit(cache=True, fastmath=FAST, inline="always")
+def taken(half, body, free, force):
+    """Bring a vehicle to the end of the step, in place."""
+    lift_u, lift_v, lifted = half.rule.lift_u, half.rule.lift_v, half.lifted
+    for i in range(body.shape[1]):
+        gained = 0.0
+        for s in range(force.size):
+            gained += lifted[i, s] * force[s]
+        body[0, i] = free[0, i] + lift_u * gained
+        body[1, i] = free[1, i] + lift_v * gained
+        body[2, i] = free[2, i] + gained
+
+
+@njit(cache=True, fastmath=FAST, inline="always")
+def balanced(half, body, force, push, acceleration):
+    """Acceleration that fits displacement, velocity and contact forces; `push` is scratch (dof,)."""
+    _, damping, stiffness, contact_map, _, _ = half.tie
+    inverse = half.mass_inverse
+    m = body.shape[1]
+    for i in range(m):
+        push[i] = 0.0
+        for p in range(m):
+            push[i] -= stiffness[i, p] * body[0, p] + damping[i, p] * body[1, p]
+        for s in range(force.size):
+            push[i] -= contact_map[s, i] * force[s]
+    for i in range(m):
+        acceleration[i] = 0.0
+        for p in range(m):
+            acceleration[i] += inverse[i, p] * push[p]

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,10 +20,11 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.stepping.exchange import SOLVED, Iteration, exchanged, numba_is_there
+from movingfrf.stepping.exchange import SOLVED, Iteration, exchanged
 from movingfrf.stepping.factors import BandSolver, SparseSolver, bands_of, half_width, indefinite, solver
 from movingfrf.stepping.finite_guideway import ELEMENT_ROUNDING, FiniteGuideway
 from movingfrf.stepping.finite_track import CubicRows
+from movingfrf.stepping.half_step import HalfStep
 from movingfrf.stepping.schemes import Scheme
 from movingfrf.stepping.tie import Tie
 
@@ -45,6 +47,11 @@ STRIDE = Stride()
 
 # Unknowns that the compiled band solver needs at least: three from either end, and three in the middle.
 FEWEST_UNKNOWNS = 9
+
+
+def numba_is_there() -> bool:
+    """Tell whether the compiled loops can be used."""
+    return find_spec("numba") is not None
 
 
 @dataclass(slots=True)
@@ -155,13 +162,13 @@ class March:
             sinking = rows @ v + self.speed * (guideway.rows(at, 1, self.contacts_across) @ u)
             force += tie.dashpots * (tie.contact_map @ dz - sinking + rate)
         state.acting[:] = force + load
-        state.body[2] = self._mass_inverse @ (-tie.damping @ dz - tie.stiffness @ z - tie.contact_map.T @ force)
+        state.body[2] = self.half.balanced(state.body, force)
         self.released(state, rows.T @ state.acting)
 
     def prepare(self) -> None:
         """Factorise now what the first step would otherwise factorise."""
         _ = self._tables if self.uses_compiled else self._solver
-        _ = self.vehicle_inverse
+        _ = self.half
 
     def run(
         self,
@@ -266,24 +273,15 @@ class March:
         )
 
     @cached_property
+    def half(self) -> HalfStep:
+        """The vehicle's half of a step, and the rule of the scheme."""
+        return HalfStep.of(self.tie, self.scheme.over(self.time_step))
+
+    @cached_property
     def effective(self) -> sparse.csc_array:
-        """(1 − α_m) M + (1 − α_f)(γ Δt C + β Δt² K)."""
-        beta, gamma, alpha_m, alpha_f = self.scheme
-        dt = self.time_step
-        moving = gamma * dt * self.guideway.damping + beta * dt * dt * self.guideway.stiffness
-        return sparse.csc_array((1 - alpha_m) * self.guideway.mass + (1 - alpha_f) * moving)
-
-    @cached_property
-    def vehicle_inverse(self) -> FloatArray:
-        """Inverse of the same for the vehicle."""
-        beta, gamma, alpha_m, alpha_f = self.scheme
-        dt, tie = self.time_step, self.tie
-        moving = gamma * dt * tie.damping + beta * dt * dt * tie.stiffness
-        return np.linalg.inv((1 - alpha_m) * tie.mass + (1 - alpha_f) * moving)
-
-    @cached_property
-    def _mass_inverse(self) -> FloatArray:
-        return np.linalg.inv(self.tie.mass)
+        """What a new acceleration of the guideway meets."""
+        guideway = self.guideway
+        return sparse.csc_array(self.half.rule.effective(guideway.mass, guideway.damping, guideway.stiffness))
 
     @cached_property
     def mass_solver(self) -> BandSolver | SparseSolver:
@@ -348,19 +346,15 @@ class March:
     ) -> tuple[int, int]:
         from movingfrf.stepping import compiled
 
-        tie = self.tie
         loop: Callable[..., tuple[int, int]] = compiled.march
         return loop(
-            np.array([self.time_step, *self.scheme]),
+            self.half,
             *self._tables["guideway"],
             *self._tables["mesh"],
             self.contacts,
             self.observers,
             float(self.speed),
             self.observers_travel,
-            self.vehicle_inverse,
-            self._mass_inverse,
-            *tie,
             np.ascontiguousarray(roughness),
             np.ascontiguousarray(rate),
             np.ascontiguousarray(loads),
@@ -384,15 +378,11 @@ class March:
         record: list[FloatArray],
     ) -> tuple[int, int]:
         """Advance as `compiled.march` does, one array operation after the other."""
-        beta, gamma, alpha_m, alpha_f = self.scheme
-        dt, tie, guideway, keep = self.time_step, self.tie, self.guideway, 1 - alpha_f
+        half, guideway = self.half, self.guideway
+        dt, free_u, free_v, lift_u, lift_v, keep, alpha_m, alpha_f = half.rule
         mass, damping, stiffness = guideway.mass, guideway.damping, guideway.stiffness
-        (u, v, a), (z, dz, ddz) = state.guideway, state.body
-        free_u, free_v, lift_u, lift_v = (0.5 - beta) * dt * dt, (1 - gamma) * dt, beta * dt * dt, gamma * dt
-        lifted = -keep * self.vehicle_inverse @ tie.contact_map.T
-        own = tie.contact_map @ lifted
-        contacts, identity = self.contacts.size, np.eye(self.contacts.size)
-        dashed = bool(tie.dashpots.any())
+        (u, v, a), body = state.guideway, state.body
+        contacts, dashed = self.contacts.size, bool(self.tie.dashpots.any())
         worst = 0
         origin, begin, end = steps
         moved_on = self._elements(origin + np.arange(begin + 1, end + 1))
@@ -424,25 +414,22 @@ class March:
             solved = self._solver.solve(right)
             free_a, per_force = solved[:, 0], solved[:, 1:]
             force: FloatArray = np.zeros(contacts)
-            if len(tie.mass):
-                free_z, free_dz = z + dt * dz + free_u * ddz, dz + free_v * ddz
-                push = -tie.stiffness @ (keep * free_z + alpha_f * z) - tie.damping @ (
-                    keep * free_dz + alpha_f * dz
-                )
-                push -= alpha_m * (tie.mass @ ddz) + alpha_f * tie.contact_map.T @ (state.acting - earlier)
-                free_ddz = self.vehicle_inverse @ push
+            if body.size:
+                free = half.freed(body, state.acting - earlier)
                 moved = u + dt * v + free_u * a + lift_u * free_a
                 yields = np.einsum("jq,jql->jl", values, per_force[at])
                 down = (values * moved[at]).sum(axis=1)
-                gap = tie.springs * (tie.contact_map @ (free_z + lift_u * free_ddz) - down + roughness[step])
-                matrix = identity + tie.springs[:, None] * lift_u * (yields - own)
+                sinking: FloatArray | float = 0.0
+                yielding: FloatArray | float = 0.0
                 if dashed:
+                    # The rate of the deflection under a contact is ẇ + v w′.
                     along, inclines = slopes.at(now)
                     sinking = (values * (v[at] + free_v * a[at] + lift_v * free_a[at])).sum(axis=1)
                     sinking += self.speed * (inclines * moved[along]).sum(axis=1)
-                    gap += tie.dashpots * (tie.contact_map @ (free_dz + lift_v * free_ddz) - sinking + rate[step])
-                    yielding = np.einsum("jq,jql->jl", inclines, per_force[along])
-                    matrix += tie.dashpots[:, None] * (lift_v * (yields - own) + self.speed * lift_u * yielding)
+                    yielding = lift_v * yields
+                    yielding += self.speed * lift_u * np.einsum("jq,jql->jl", inclines, per_force[along])
+                road = roughness[step], rate[step]
+                matrix, gap = half.met(free, road, (down, sinking), (lift_u * yields, yielding))
                 if self.iteration.tolerance:
                     force, count = exchanged(matrix, gap, state.acting - earlier, self.iteration)
                     if count < 0:
@@ -450,9 +437,7 @@ class March:
                     worst = max(worst, count)
                 else:
                     force = np.linalg.solve(matrix, gap)
-                ddz[:] = free_ddz + lifted @ force
-                z[:] = free_z + lift_u * ddz
-                dz[:] = free_dz + lift_v * ddz
+                half.taken(body, free, force)
             new = free_a + per_force @ force
             u += dt * v + free_u * a + lift_u * new
             v += free_v * a + lift_v * new
@@ -462,11 +447,10 @@ class March:
             if self.observers.size:
                 seen, weights = watched.at(now)
                 record[2][step] = (weights * u[seen]).sum(axis=1)
-            record[3][step], record[4][step] = z, ddz
+            record[3][step], record[4][step] = body[0], body[2]
             if alpha_m or alpha_f:
                 # What such a scheme carries as acceleration belongs to a later instant; that of this one balances.
-                push = -tie.stiffness @ z - tie.damping @ dz - tie.contact_map.T @ force
-                record[4][step] = self._mass_inverse @ push
+                record[4][step] = half.balanced(body, force)
         return -1, worst
 
     def _rows(

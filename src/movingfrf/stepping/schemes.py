@@ -3,9 +3,29 @@
 from __future__ import annotations
 
 from numbers import Real
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from movingfrf._basics.checks import Checks, shown
+
+
+class Rule(NamedTuple):
+    """A scheme with a step of some length: u ← u + Δt v + free_u a + lift_u ä, v ← v + free_v a + lift_v ä.
+
+    Here a is the old acceleration and ä the new one; the compiled loops read it as it is.
+    """
+
+    step: float  # [s]
+    free_u: float  # (½ − β) Δt² [s²]
+    free_v: float  # (1 − γ) Δt [s]
+    lift_u: float  # β Δt² [s²]
+    lift_v: float  # γ Δt [s]
+    keep: float  # 1 − α_f
+    alpha_m: float
+    alpha_f: float
+
+    def effective(self, mass: Any, damping: Any, stiffness: Any) -> Any:
+        """Give what a new acceleration meets, dense or sparse: (1 − α_m) M + (1 − α_f)(γ Δt C + β Δt² K)."""
+        return (1 - self.alpha_m) * mass + self.keep * (self.lift_v * damping + self.lift_u * stiffness)
 
 
 class Scheme(NamedTuple):
@@ -31,6 +51,12 @@ class Scheme(NamedTuple):
     gamma: float
     alpha_m: float = 0.0
     alpha_f: float = 0.0
+
+    def over(self, step: float) -> Rule:
+        """Apply the scheme to a step of some length [s]."""
+        beta, gamma, alpha_m, alpha_f = (float(number) for number in self)
+        new = beta * step * step, gamma * step
+        return Rule(step, (0.5 - beta) * step * step, (1 - gamma) * step, *new, 1 - alpha_f, alpha_m, alpha_f)
 
     @property
     def largest_phase(self) -> float:

@@ -22,10 +22,11 @@ from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.stepping.coupled import prepared_journey
 from movingfrf.stepping.duhamel import duhamel, duhamel_loads
-from movingfrf.stepping.exchange import SOLVED, Iteration, numba_is_there
+from movingfrf.stepping.exchange import SOLVED, Iteration
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.finite_track import bending_length, finite_track
 from movingfrf.stepping.impulse import CANCELLING, struck_track
+from movingfrf.stepping.marching import numba_is_there
 from movingfrf.stepping.moving_loads import newmark_loads
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle

@@ -13,7 +13,7 @@ from movingfrf.reports.curves import GREY, PALETTE
 from movingfrf.reports.figures import SIZE, Illustration, blank, drawing, illustrated
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Column, Row, Setting, Table
-from movingfrf.stepping.exchange import numba_is_there
+from movingfrf.stepping.marching import numba_is_there
 from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
 from movingfrf.studies.comparison.convergence import TARGETS
 from movingfrf.studies.comparison.methods import FOR_LOADS, FOR_VEHICLE, compiles

@@ -447,7 +447,7 @@ def costs(study: Study) -> Outcome:
         },
         computed=[
             f"Multiplications, n = {n} unknowns, N = {samples} steps. Newmark with full matrices, factorised "
-            "once: N (3 n² + 11 n + 17). With bands, as this package steps: N (31 n + 37). Duhamel: m N − m (m − "
+            "once: N (3 n² + 11 n + 17). With bands, as this package steps: N (31 n + 34). Duhamel: m N − m (m − "
             f"1)/2 with the m = {memory} samples recorded on 40 m. Moving FRF: 4 for each of the f T + 1 = "
             f"{unpadded} frequencies up to {STATED.truncation:g} Hz; padded for the response to die away, "
             f"{grid.kept} of them, and two transforms of {grid.padded} points. A division counts as a "

@@ -66,7 +66,7 @@ def newmark_banded(dofs: int, steps: int) -> int:
     A road that stands still, bands of half-width 3, average acceleration, no vehicle. Each step takes, as the loop
     is written (n unknowns),
 
-    - 2 for the distance travelled, and 3 for the two factors of the old acceleration, (½ − β) Δt² and (1 − γ) Δt;
+    - 2 for the distance travelled;
     - 2 × 20 for the cubic functions (12), their slopes (7) and the place (1): at the load and at the observer,
       which the loop does not know to be one point;
     - 5 n for what displacement and velocity would be without a new acceleration: 3 n and 2 n;
@@ -78,7 +78,7 @@ def newmark_banded(dofs: int, steps: int) -> int:
     - 5 n for the new displacement and velocity: 3 n and 2 n;
     - 2 × 4 for the deflection, at the load and at the observer.
 
-    Together 31 n + 37 per step.
+    Together 31 n + 34 per step.
 
     Parameters
     ----------
@@ -100,11 +100,11 @@ def newmark_banded(dofs: int, steps: int) -> int:
     Examples
     --------
     >>> newmark_banded(480, 10_000)
-    149170000
+    149140000
     """
     _require_whole(steps=steps)
     _require_whole(FEWEST_UNKNOWNS, dofs=dofs)
-    travelled, factors, functions, load, deflection = 2, 3, 2 * 20, 8, 2 * 4
+    travelled, functions, load, deflection = 2, 2 * 20, 8, 2 * 4
     width = 3  # half-width of the bands; the compiled loop, which has it too, cannot be read without numba
     # At either end of the matrix, three rows lack 3, 2 and 1 of the entries that the others have.
     missing = width * (width + 1) // 2
@@ -112,7 +112,7 @@ def newmark_banded(dofs: int, steps: int) -> int:
     core = 4 - dofs % 2
     half = (dofs - core) // 2
     solution = 2 * (width + width + 1) * half + 2 * missing + core**2
-    once = travelled + factors + functions + load + deflection
+    once = travelled + functions + load + deflection
     return steps * (once + 5 * dofs + product + solution + 5 * dofs)
 
 
