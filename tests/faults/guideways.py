@@ -1,4 +1,4 @@
-"""Waves, their sides, the layers below a beam; what a struck road remembers."""
+"""Offsets, waves, their sides, the layers below a beam; what a struck road remembers."""
 
 from __future__ import annotations
 
@@ -35,6 +35,9 @@ FAULTS = [
         "{(0, 0): self.shear_stiffness}",
     ),
     Fault("layers side by side", "guideways/foundations.py", ".in_series(layer)", " + layer"),
+    # What whoever writes a guideway need not write.
+    Fault("places across forgotten", "guideways/guideway.py", "    if wide:", "    if False:"),
+    Fault("offset for its mirror", "guideways/guideway.py", "rows[back.ravel()]", "rows[back.ravel()[::-1]]"),
     # Plates.
     Fault(
         "place of the source for the offset across",

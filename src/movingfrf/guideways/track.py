@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray
@@ -13,6 +12,7 @@ from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf.guideways.beams import Beam
 from movingfrf.guideways.critical import first_stationary_velocity, speed_of_greatest_deflection
 from movingfrf.guideways.foundations import Foundation
+from movingfrf.guideways.guideway import Asked, at_offsets
 from movingfrf.guideways.waves import Ratio, residue_sum
 
 
@@ -98,17 +98,19 @@ class Track(Remembering):
         >>> abs(road.moving_frf([0.0, 4.0, -4.0], 10.0, [0.0])).round(11)
         array([[3.737e-08, 3.600e-10, 0.000e+00]])
         """
-        shape = np.broadcast_shapes(np.shape(ahead), np.shape(across), np.shape(source_across))
-        with checking() as check:
-            offsets = check.array("ahead", np.broadcast_to(np.asarray(ahead), shape).ravel(), "m", (None,))
-            speed = check.finite("speed", speed, "m/s")
-            frequencies = np.atleast_1d(np.asarray(omega, complex))
-            if frequencies.ndim != 1 or not np.isfinite(frequencies).all() or (frequencies.imag > 0).any():
-                check.refuse("omega", "must be finite, one-dimensional and have Im ω ≤ 0 [rad/s]")
-            derivative = check.whole("derivative", derivative)
-        distinct, back = np.unique(offsets, return_inverse=True)
-        frf = residue_sum(self.stiffness(), distinct, speed, frequencies, derivative)
-        return frf[back].T.reshape(frequencies.size, *shape)
+        return at_offsets(
+            self._frf,
+            ahead,
+            speed,
+            omega,
+            across=across,
+            source_across=source_across,
+            derivative=derivative,
+            derivatives=None,
+        )
+
+    def _frf(self, asked: Asked) -> ComplexArray:
+        return residue_sum(self.stiffness(), asked.ahead[:, 0], asked.speed, asked.omega, asked.derivative)
 
 
 def track(beam: Beam, foundation: Foundation) -> Track:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
 from movingfrf._basics.checks import checking
-from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import in_moving_frame, wavenumbers
 
@@ -276,5 +276,5 @@ def _response(guideway: Guideway, frequency: ArrayLike, ahead: ArrayLike, speed:
             "omega": ("frequency", omega, {"units": "rad/s", "long_name": "angular frequency in the moving frame"}),
             "ahead": ("ahead", at, {"units": "m", "long_name": "receiver minus source, ahead positive"}),
         },
-        {"form": form, "speed": float(speed), "guideway": repr(guideway)},
+        {"form": form, "speed": float(speed), "guideway": told(guideway)},
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 import movingfrf.results.findings as find
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.line import SpectralGrid, require_record
 from movingfrf.response.solve import couple, histories
 from movingfrf.response.stability import along_the_axis, require_stable
@@ -183,7 +183,7 @@ def simulate(
         "blend": float(blend),
         "datum": excitation.datum,
         "critical_speed": critical_speed,
-        "guideway": repr(guideway),
+        "guideway": told(guideway),
         "profile": profile.source,
         "profile_steps": "\n".join(profile.steps),
         "findings": find.announced(found),

@@ -11,7 +11,7 @@ import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
 from movingfrf._basics.version import VERSION
-from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.solve import responses
 from movingfrf.response.stability import along_the_axis, require_stable
 from movingfrf.response.system import joined
@@ -100,7 +100,7 @@ def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: A
         "movingfrf": VERSION,
         "speed": float(speed),
         "critical_speed": critical_speed,
-        "guideway": repr(guideway),
+        "guideway": told(guideway),
         "findings": find.announced(find.near_critical(speed, critical_speed)),
     }
     return labelled(values, TRANSFER, attributes)
