@@ -11,7 +11,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
-from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.progress import Progress, silent, under
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.studies.comparison.methods import DISCRETISATION, Case, elements, newmark, stepped
 
@@ -105,11 +105,8 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
 
     def solved(level: int, around: float) -> Quantities:
         case = Case(scenario=scenario, time_step=step / 2**level, element=element / 2**level, around=around)
-
-        def told(stage: str, fraction: float) -> None:
-            progress(f"converged answer, refinement {level}, {stage}", fraction)
-
-        result = prepare(case, travels=True, progress=told)()
+        heading = f"converged answer, refinement {level}"
+        result = prepare(case, travels=True, progress=under(heading, progress))()
         return {name: values[:: 2**level].copy() for name, values in quantities(result, scenario).items()}
 
     # First the length of the road, coarsely: what comes back from its ends changes the answer like a mesh error.
