@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf.guideways.beams import Beam
-from movingfrf.guideways.critical import first_stationary_velocity, speed_of_greatest_deflection
+from movingfrf.guideways.critical import buckles_at, first_stationary_velocity, speed_of_greatest_deflection
 from movingfrf.guideways.foundations import Foundation
 from movingfrf.guideways.guideway import Asked, at_offsets
 from movingfrf.guideways.waves import Ratio, residue_sum
@@ -131,11 +132,16 @@ def track(beam: Beam, foundation: Foundation) -> Track:
     Raises
     ------
     ValueError
-        If one of the two is not what it should be.
+        If one of the two is not what it should be, or the beam buckles on the foundation.
     """
     with checking() as check:
         if not isinstance(beam, Beam):
             check.refuse("beam", f"must be a beam, got {beam!r}")
         if not isinstance(foundation, Foundation):
             check.refuse("foundation", f"must be a foundation, got {foundation!r}")
-    return Track(beam, foundation)
+    made = Track(beam, foundation)
+    if (wavenumber := buckles_at(made.stiffness(damped=False))) > 0:
+        raise ValueError(
+            f"beam must stay straight on its foundation, but buckles in waves of {2 * np.pi / wavenumber:.3g} m"
+        )
+    return made
