@@ -316,7 +316,8 @@ def test_a_moving_load_is_a_row_of_fixed_ones(name, speed):
         ]
         for v in (speed, -speed)
     )
-    size = np.abs(seen_there).max(axis=1)
+    # Where little is left, what is left of rounding: the exponential window raises it.
+    size = np.maximum(np.abs(seen_there).max(axis=1), 1e-6 * np.abs(seen_there).max())
     # An undamped road wraps around less than 1e-4 of what is left at the end; it started as the pulse did.
     tolerance = 3e-4 if speed < 100 else 1e-2
     if not isinstance(road, Track):
