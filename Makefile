@@ -12,7 +12,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 TESTS = PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadgroup
 
-.PHONY: demo paper test test-slow test-lowest coverage bench against scale random fuzz accuracy faults lint format dist picture clean
+.PHONY: demo paper test test-slow test-lowest coverage bench against scale random fuzz accuracy faults calls lint format dist picture clean
 
 demo: $(READY)
 	@mkdir -p out
@@ -73,6 +73,10 @@ accuracy: $(READY)
 PART ?=
 faults: $(READY)
 	$(BIN)/python -m tests.faults $(if $(filter ?,$(PART)),--parts,$(addprefix --part ,$(PART)))
+
+# Calls between rooms, counted while the reference case runs and what is built on it; no call may lead back.
+calls: $(READY)
+	$(BIN)/python tools/calls.py
 
 # Source distribution and wheel: built, checked, installed into an empty environment and used there.
 dist: $(READY)

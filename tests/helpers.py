@@ -6,8 +6,12 @@ motion, `rigid_motions` from the geometry.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -50,13 +54,6 @@ def undamped(part):
 
 
 UNDAMPED: dict[str, Track] = {name: undamped(road) for name, road in DAMPED.items() if name != "bending_damping"}
-TRACKS = {**DAMPED, **{f"undamped_{name}": road for name, road in UNDAMPED.items()}}
-
-
-@cache
-def critical_speed(name: str) -> float:
-    """Critical speed of a listed track [m/s], computed once."""
-    return TRACKS[name].critical_speed
 
 
 # At rest, slow, below and above the critical speed, as multiples of it.
@@ -85,6 +82,35 @@ def compliance(road: Track, kappa, frequency):
     """C(κ, Ω) of a track in the fixed frame [m²/N], METHOD.md section 3, written out."""
     kappa, frequency = np.asarray(kappa, complex), np.asarray(frequency, complex)
     return 1.0 / (stiffness_of(road.beam, kappa, frequency) + stiffness_of(road.foundation, kappa, frequency))
+
+
+def written_on(page: str) -> dict:
+    """Run the one block of Python on a page of the documentation; returns what it defines."""
+    text = (Path(__file__).parents[1] / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    names: dict = {}
+    exec(compile(code, page, "exec", dont_inherit=True), names)
+    return names
+
+
+class Listed(NamedTuple):
+    """A guideway that the laws are put to; its compliance C(κ, Ω) [m²/N] written out, if known; is it damped."""
+
+    guideway: mf.Guideway
+    compliance: Callable | None = None
+    damped: bool = True
+
+
+GUIDEWAYS: dict[str, Listed] = {
+    **{name: Listed(road, partial(compliance, road)) for name, road in DAMPED.items()},
+    **{
+        f"undamped_{name}": Listed(road, partial(compliance, road), damped=False) for name, road in UNDAMPED.items()
+    },
+    "taut_string": Listed(
+        written_on("guideways")["TautString"](tension=2e4, mass=1.35, stiffness=2e3, damping=60.0),
+        lambda kappa, omega: 1 / (2e4 * kappa**2 - 1.35 * omega**2 + 60j * omega + 2e3),
+    ),
+}
 
 
 # PARAMETERS.md: the reference vehicle.

@@ -15,8 +15,11 @@ from movingfrf._basics.documented import documented
 
 PUBLIC = mf.__all__
 
-# Public constructors that are not names of their own.
-CALLABLES = {name: getattr(mf, name) for name in PUBLIC} | {"IsoRoad.of_class": mf.IsoRoad.of_class}
+# Public constructors that are not names of their own, and what a contract asks for in place of the contract.
+CALLABLES = {name: getattr(mf, name) for name in PUBLIC if name != "Guideway"} | {
+    "IsoRoad.of_class": mf.IsoRoad.of_class,
+    "Guideway.moving_frf": mf.Guideway.moving_frf,
+}
 
 NUMERIC = re.compile(r"\b(float|array|ndarray)")
 UNIT = re.compile(r"\[[^\]]+\]")

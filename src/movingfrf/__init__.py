@@ -17,6 +17,8 @@ _WHERE = {
     "ShearLayer": "guideways.foundations",
     "OnMass": "guideways.foundations",
     "track": "guideways.track",
+    "Guideway": "guideways.guideway",
+    "at_offsets": "guideways.guideway",
     "RigidGuideway": "guideways.rigid",
     "Contact": "vehicles.contact",
     "Vehicle": "vehicles.vehicle",

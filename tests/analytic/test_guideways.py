@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import movingfrf as mf
-from tests.helpers import DAMPED, RAIL, UNDAMPED
+from movingfrf.guideways.waves import ONE, Ratio, polynomial
+from tests.helpers import DAMPED, PAVEMENT, RAIL, UNDAMPED
 
 TABLE = Path(__file__).parents[1] / "data" / "moving_frf.csv"
 ROWS = list(csv.DictReader(TABLE.read_text().splitlines()))
@@ -108,6 +109,30 @@ def test_point_receptance_at_rest(beam, damping, frequency):
     expected = 1 / (2 * np.sqrt(2) * bending * q**3)
     for speed in (0.0, 1e-12):
         assert abs(road.moving_frf([0.0], speed, [omega])[0, 0] / expected - 1) < 1e-12
+
+
+class Repelling:
+    """A foundation of one's own, whose shear layer pushes away: k − G κ²."""
+
+    def __init__(self, stiffness, shear):
+        self.table = polynomial({(0, 0): stiffness, (2, 0): -shear})
+
+    def foundation_stiffness(self, *, damped=True):
+        return Ratio(self.table, ONE)
+
+
+def test_a_track_that_buckles_is_refused():
+    """EI κ⁴ − G κ² + k has a root from G = 2 √(k EI) on, at κ⁴ = k/EI."""
+    stiffness, bending = 8.0e6, 1.573e7
+    limit = 2 * np.sqrt(stiffness * bending)
+    still = mf.track(PAVEMENT, Repelling(stiffness, (1 - 1e-6) * limit))
+    assert (
+        still.moving_frf([0.0], 0.0, [0.0])[0, 0].real
+        > 100 * DAMPED["euler_bernoulli_winkler"].moving_frf([0.0], 0.0, [0.0])[0, 0].real
+    )
+    length = f"{2 * np.pi * (bending / stiffness) ** 0.25:.3g}"
+    with pytest.raises(ValueError, match=rf"beam must stay straight on its foundation, .* in waves of {length} m"):
+        mf.track(PAVEMENT, Repelling(stiffness, (1 + 1e-6) * limit))
 
 
 def test_basin_at_rest():

@@ -1,4 +1,4 @@
-"""Waves, their sides, the layers below a beam; what a struck road remembers."""
+"""Offsets, waves, their sides, the layers below a beam; what a struck road remembers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,11 @@ FAULTS = [
         "{(2, 0): self.shear_stiffness}",
         "{(0, 0): self.shear_stiffness}",
     ),
+    Fault("buckled track let in", "guideways/critical.py", "if positive.size else", "if False else"),
     Fault("layers side by side", "guideways/foundations.py", ".in_series(layer)", " + layer"),
+    # What whoever writes a guideway need not write.
+    Fault("places across forgotten", "guideways/guideway.py", "    if wide:", "    if False:"),
+    Fault("offset for its mirror", "guideways/guideway.py", "rows[back.ravel()]", "rows[back.ravel()[::-1]]"),
     # Plates.
     Fault(
         "place of the source for the offset across",

@@ -101,7 +101,11 @@ def test_places_that_were_not_recorded_together_are_refused(asked):
         (([0.0], np.nan, [1.0]), {}, "speed must be 10.0 m/s"),
         (([0.0, 1.0], 10.0, [1.0]), {}, r"ahead must be one of the recorded offsets \[0.0, 3.0, -3.0\] m, got 1.0"),
         (([3.001], 10.0, [1.0]), {}, "ahead must be one of the recorded"),
-        (([0.0], 10.0, [1.0]), {"derivative": 1}, "derivative must be 0: the record holds deflections only, got 1"),
+        (
+            ([0.0], 10.0, [1.0]),
+            {"derivative": 1},
+            "derivative must be 0: this guideway knows deflections only, got 1",
+        ),
     ],
 )
 def test_what_was_not_recorded_is_refused(arguments, more, message):

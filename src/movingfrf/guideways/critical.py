@@ -1,4 +1,4 @@
-"""At which speed a steady load meets the waves of its own guideway."""
+"""At which speed a steady load meets the waves of its own guideway; and whether that stands at all."""
 
 from __future__ import annotations
 
@@ -35,6 +35,24 @@ class PhaseVelocity(NamedTuple):
 
     value: float
     unbounded: bool
+
+
+def buckles_at(lossless: Ratio) -> float:
+    """Wavenumber at which an undamped guideway has no static stiffness.
+
+    Parameters
+    ----------
+    lossless : Ratio
+        Dynamic stiffness without damping [N/m²]: only even powers of κ and p.
+
+    Returns
+    -------
+    float
+        The greatest of them [rad/m]; nan if there is none, so that the guideway stands.
+    """
+    squares = np.roots(lossless.above[::2, 0][::-1])
+    positive = squares.real[np.isreal(squares) & (squares.real > 0)]
+    return float(np.sqrt(positive.max())) if positive.size else float("nan")
 
 
 def first_stationary_velocity(lossless: Ratio) -> PhaseVelocity:

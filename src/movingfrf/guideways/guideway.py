@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from inspect import getattr_static
+from typing import Any, NamedTuple, Protocol
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.arrays import ComplexArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.checks import checking
 
 
 class Guideway(Protocol):
-    """An infinitely long, homogeneous road or track.
+    """An infinitely long, homogeneous road or track: the contract; any object that keeps it is a guideway.
 
-    Laws that every guideway obeys, and that the tests put to every one of them:
+    `at_offsets` takes shapes and checks off the hands of whoever writes one; `docs/guideways.md` has one in twenty
+    lines. Laws that every guideway obeys, and that the tests put to every one of them:
 
     1. *Homogeneity*: only the offset between receiver and source matters, not where they are.
     2. *Mirror*: G(ξ, v) = G(−ξ, −v). Ahead and behind differ as soon as v ≠ 0.
@@ -65,8 +70,106 @@ class Guideway(Protocol):
         ...
 
 
+class Asked(NamedTuple):
+    """What a guideway is asked for, checked: distinct offsets in a column, frequencies in a row.
+
+    Whatever is computed of both by plain formulas has the shape (offset, frequency).
+    """
+
+    ahead: FloatArray  # (offset, 1) [m]
+    across: FloatArray  # (offset, 1) [m]
+    source_across: FloatArray  # (offset, 1) [m]
+    speed: float  # [m/s]
+    omega: ComplexArray  # (frequency,), Im ω ≤ 0 [rad/s]
+    derivative: int
+
+
+def at_offsets(
+    frf: Callable[[Asked], Any],
+    ahead: ArrayLike,
+    speed: float,
+    omega: ArrayLike,
+    *,
+    across: ArrayLike = 0.0,
+    source_across: ArrayLike = 0.0,
+    derivative: int = 0,
+    wide: bool = False,
+    derivatives: int | None = 0,
+) -> ComplexArray:
+    """Answer as `Guideway.moving_frf` does, by a function of distinct offsets.
+
+    Parameters
+    ----------
+    frf : callable
+        Called once with what is asked for: `ahead`, `across`, `source_across`, shape (offset, 1) [m], `speed`
+        [m/s], `omega`, shape (frequency,) [rad/s], and `derivative`. Returns the moving FRF [m/N/m^derivative] in
+        an array that broadcasts to (offset, frequency).
+    ahead, across, source_across : array_like
+        As `Guideway.moving_frf` was given them [m].
+    speed : float
+        Speed [m/s].
+    omega : array_like, shape (frequency,)
+        Angular frequency in the moving frame [rad/s].
+    derivative : int
+        Order of the derivative with respect to x, a whole number of.
+    wide : bool
+        Whether places across make a difference; otherwise `across` and `source_across` of what is asked are zero.
+    derivatives : int, optional
+        Number of derivatives that `frf` knows; None: all.
+
+    Returns
+    -------
+    ndarray, shape (frequency, *s), complex
+        Moving FRF [m/N/m^derivative].
+
+    Raises
+    ------
+    ValueError
+        If an argument is not finite, ω has a positive imaginary part, or the derivative is not a whole number or
+        not known.
+
+    Examples
+    --------
+    A road of separate springs and dashpots, 8e6 N/m and 3e4 N s/m at each point: what is not loaded does not move.
+
+    >>> springs = lambda asked: (asked.ahead == 0) / (8.0e6 + 3.0e4j * asked.omega)
+    >>> abs(at_offsets(springs, [[0.0, 4.0], [-4.0, 0.0]], 10.0, [0.0, 100.0])).round(10)
+    array([[[1.25e-07, 0.00e+00],
+            [0.00e+00, 1.25e-07]],
+    <BLANKLINE>
+           [[1.17e-07, 0.00e+00],
+            [0.00e+00, 1.17e-07]]])
+    """
+    with checking() as check:
+        places = [
+            check.array(name, np.asarray(given).ravel(), "m", (None,)).reshape(np.shape(given))
+            for name, given in (("ahead", ahead), ("across", across), ("source_across", source_across))
+        ]
+        speed = check.finite("speed", speed, "m/s")
+        frequencies = np.atleast_1d(np.asarray(omega, complex))
+        if frequencies.ndim != 1 or not np.isfinite(frequencies).all() or (frequencies.imag > 0).any():
+            check.refuse("omega", "must be finite, one-dimensional and have Im ω ≤ 0 [rad/s]")
+        derivative = check.whole("derivative", derivative)
+        if derivatives is not None and derivative > derivatives:
+            knows = f"at most {derivatives}" if derivatives else "0: this guideway knows deflections only"
+            check.refuse("derivative", f"must be {knows}, got {derivative}")
+    shape = np.broadcast_shapes(*(place.shape for place in places))
+    given = np.stack([np.broadcast_to(place, shape).ravel() for place in places])
+    if wide:
+        distinct, back = np.unique(given, axis=1, return_inverse=True)
+    else:
+        # Offsets along alone sort fifty times as fast as triples.
+        along, back = np.unique(given[0], return_inverse=True)
+        distinct = np.stack([along, 0 * along, 0 * along])
+    columns = distinct[:, :, None]
+    found = frf(Asked(columns[0], columns[1], columns[2], speed, frequencies, derivative))
+    rows = np.broadcast_to(found, (distinct.shape[1], frequencies.size)).astype(complex, copy=False)
+    placed: ComplexArray = rows[back.ravel()].T.reshape(frequencies.size, *shape)
+    return placed
+
+
 def require_guideway(guideway: object) -> None:
-    """Refuse what has no moving FRF: a finite road, for one, which is not the same everywhere.
+    """Refuse what does not keep the contract: a finite road, for one, which is not the same everywhere.
 
     Parameters
     ----------
@@ -83,3 +186,25 @@ def require_guideway(guideway: object) -> None:
             f"guideway must have a moving FRF, as a track has, got a {type(guideway).__name__}; a finite road is "
             "for cdfm, sim and newmark_loads, or struck with moving_impulse_response"
         )
+    # Looked up without asking for it, which may take a second.
+    if getattr_static(guideway, "critical_speed", None) is None:
+        raise ValueError(
+            f"guideway must have a critical_speed [m/s], which may be inf, got a {type(guideway).__name__} without"
+        )
+
+
+def told(guideway: Guideway) -> str:
+    """Say what a guideway is, for the attributes of a result: equal input makes equal bytes.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The guideway.
+
+    Returns
+    -------
+    str
+        Its own representation, or its kind if that would be an address in memory.
+    """
+    kind = type(guideway)
+    return kind.__name__ if kind.__repr__ is object.__repr__ else repr(guideway)

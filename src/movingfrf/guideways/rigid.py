@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray
+from movingfrf.guideways.guideway import at_offsets
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,5 +36,13 @@ class RigidGuideway:
         derivative: int = 0,
     ) -> ComplexArray:
         """Zero for all offsets and frequencies [m/N]; see `Guideway.moving_frf` for the arguments."""
-        shape = np.broadcast_shapes(np.shape(ahead), np.shape(across), np.shape(source_across))
-        return np.zeros((np.size(omega), *shape), complex)
+        return at_offsets(
+            lambda _: 0.0,
+            ahead,
+            speed,
+            omega,
+            across=across,
+            source_across=source_across,
+            derivative=derivative,
+            derivatives=None,
+        )

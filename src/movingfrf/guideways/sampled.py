@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
 from movingfrf._basics.checks import checking
+from movingfrf.guideways.guideway import Asked, at_offsets
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -194,19 +195,25 @@ class SampledGuideway:
             If the speed, an offset or a derivative was not recorded.
         """
         self.require_speed(speed)
-        if derivative:
-            raise ValueError(f"derivative must be 0: the record holds deflections only, got {derivative!r}")
-        chosen = self.columns(ahead, across, source_across)
-        shape = chosen.shape
-        distinct, back = np.unique(chosen.ravel(), return_inverse=True)
-        frequencies = np.atleast_1d(np.asarray(omega, complex))
-        frf = np.zeros((frequencies.size, distinct.size), complex)
-        within = np.flatnonzero(np.abs(frequencies.real) <= np.pi / self.time_step)
+        return at_offsets(
+            self._frf,
+            ahead,
+            speed,
+            omega,
+            across=across,
+            source_across=source_across,
+            derivative=derivative,
+            wide=self.across is not None,
+        )
+
+    def _frf(self, asked: Asked) -> ComplexArray:
+        columns = self.columns(asked.ahead, asked.across, asked.source_across)[:, 0]
+        frf = np.zeros((columns.size, asked.omega.size), complex)
+        within = np.flatnonzero(np.abs(asked.omega.real) <= np.pi / self.time_step)
         for first in range(0, within.size, RECORD.together):
             some = within[first : first + RECORD.together]
-            frf[some] = self._transformed(frequencies[some], distinct)
-        placed: ComplexArray = np.take(frf, back, axis=1).reshape(frequencies.size, *shape)
-        return placed
+            frf[:, some] = self._transformed(asked.omega[some], columns).T
+        return frf
 
     def _transformed(self, omega: ComplexArray, columns: IntArray) -> ComplexArray:
         """Σ g(k Δt) e^{−iω k Δt} Δt, the first sample by half, in blocks of samples that share a factor."""

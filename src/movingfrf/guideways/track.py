@@ -11,8 +11,9 @@ from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf.guideways.beams import Beam
-from movingfrf.guideways.critical import first_stationary_velocity, speed_of_greatest_deflection
+from movingfrf.guideways.critical import buckles_at, first_stationary_velocity, speed_of_greatest_deflection
 from movingfrf.guideways.foundations import Foundation
+from movingfrf.guideways.guideway import Asked, at_offsets
 from movingfrf.guideways.waves import Ratio, residue_sum
 
 
@@ -98,17 +99,19 @@ class Track(Remembering):
         >>> abs(road.moving_frf([0.0, 4.0, -4.0], 10.0, [0.0])).round(11)
         array([[3.737e-08, 3.600e-10, 0.000e+00]])
         """
-        shape = np.broadcast_shapes(np.shape(ahead), np.shape(across), np.shape(source_across))
-        with checking() as check:
-            offsets = check.array("ahead", np.broadcast_to(np.asarray(ahead), shape).ravel(), "m", (None,))
-            speed = check.finite("speed", speed, "m/s")
-            frequencies = np.atleast_1d(np.asarray(omega, complex))
-            if frequencies.ndim != 1 or not np.isfinite(frequencies).all() or (frequencies.imag > 0).any():
-                check.refuse("omega", "must be finite, one-dimensional and have Im ω ≤ 0 [rad/s]")
-            derivative = check.whole("derivative", derivative)
-        distinct, back = np.unique(offsets, return_inverse=True)
-        frf = residue_sum(self.stiffness(), distinct, speed, frequencies, derivative)
-        return frf[back].T.reshape(frequencies.size, *shape)
+        return at_offsets(
+            self._frf,
+            ahead,
+            speed,
+            omega,
+            across=across,
+            source_across=source_across,
+            derivative=derivative,
+            derivatives=None,
+        )
+
+    def _frf(self, asked: Asked) -> ComplexArray:
+        return residue_sum(self.stiffness(), asked.ahead[:, 0], asked.speed, asked.omega, asked.derivative)
 
 
 def track(beam: Beam, foundation: Foundation) -> Track:
@@ -129,11 +132,16 @@ def track(beam: Beam, foundation: Foundation) -> Track:
     Raises
     ------
     ValueError
-        If one of the two is not what it should be.
+        If one of the two is not what it should be, or the beam buckles on the foundation.
     """
     with checking() as check:
         if not isinstance(beam, Beam):
             check.refuse("beam", f"must be a beam, got {beam!r}")
         if not isinstance(foundation, Foundation):
             check.refuse("foundation", f"must be a foundation, got {foundation!r}")
-    return Track(beam, foundation)
+    made = Track(beam, foundation)
+    if (wavenumber := buckles_at(made.stiffness(damped=False))) > 0:
+        raise ValueError(
+            f"beam must stay straight on its foundation, but buckles in waves of {2 * np.pi / wavenumber:.3g} m"
+        )
+    return made

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
 from movingfrf._basics.checks import checking
-from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import in_moving_frame, wavenumbers
 from movingfrf.results.labels import attributes, labelled
@@ -270,6 +270,6 @@ def _response(guideway: Guideway, frequency: ArrayLike, ahead: ArrayLike, speed:
         f"{form.capitalize()} of a guideway",
         form=form,
         speed=speed,
-        guideway=repr(guideway),
+        guideway=told(guideway),
     )
     return labelled({"frequency": f, "omega": omega, "ahead": at, form: values}, settings)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 import movingfrf.results.findings as find
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.line import Line, require_record
 from movingfrf.response.solve import solve
 from movingfrf.response.system import Prescribed
@@ -133,7 +133,7 @@ def moving_loads(
         truncation=0.5 / time_step if truncation is None else truncation,
         truncation_error=error,
         critical_speed=critical_speed,
-        guideway=repr(guideway),
+        guideway=told(guideway),
         findings=found,
     )
     return labelled(values, settings)

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
 from movingfrf._basics.checks import Checks, SolveError, checking, shown
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.metrics.comfort import WEIGHTING_OF
 from movingfrf.metrics.loads import load_coefficient
 from movingfrf.response.quadrature import Lines, Unresolved, resolved
@@ -237,7 +237,7 @@ def random_response(
         frequencies=lines.frequency.size,
         weightings=", ".join(f"{name} for accelerations in {unit}/s2" for unit, name in WEIGHTING_OF.items()),
         critical_speed=surveyed.critical_speed,
-        guideway=repr(guideway),
+        guideway=told(guideway),
         findings=found,
     )
     return labelled(values, settings)

@@ -9,7 +9,7 @@ import numpy as np
 
 import movingfrf.results.findings as find
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.line import Line, require_record
 from movingfrf.response.solve import solve
 from movingfrf.response.survey import survey
@@ -198,7 +198,7 @@ def driven(
         truncation_error=surveyed.truncation.error,
         datum=excitation.datum,
         critical_speed=surveyed.critical_speed,
-        guideway=repr(guideway),
+        guideway=told(guideway),
         profile=profile.source,
         profile_steps="\n".join(profile.steps),
         findings=found,

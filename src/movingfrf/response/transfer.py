@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
-from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.solve import solve
 from movingfrf.response.survey import survey
 from movingfrf.response.system import joined
@@ -99,7 +99,7 @@ def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: A
         "Response of a vehicle and a guideway per unit of roughness",
         speed=speed,
         critical_speed=surveyed.critical_speed,
-        guideway=repr(guideway),
+        guideway=told(guideway),
         findings=surveyed.findings,
     )
     return labelled(values, settings)

@@ -222,7 +222,7 @@ def eliminate(matrix, right):
         right[i] /= matrix[i, i]
 
 
-# The vehicle's half of a step; `half_step.HalfStep` has the same in NumPy and says what each does. They are written
+# The vehicle's half of a step; `half_step.HalfStep` has the same in NumPy and says what each does. They are put
 # into the loops that call them: as calls, or with an array taken out of the tuple more than once, a step took half
 # as long again.
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
-from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.progress import Progress, silent, under
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.scenarios.scenario import Drive, Scenario
 from movingfrf.scenarios.stepped import DISCRETISATION, elements
@@ -122,11 +122,8 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
 
     def solved(level: int, around: float) -> Quantities:
         case = Case(scenario=scenario, time_step=step / 2**level, element=element / 2**level, around=around)
-
-        def told(stage: str, fraction: float) -> None:
-            progress(f"converged answer, refinement {level}, {stage}", fraction)
-
-        result = prepare(case, travels=endless, progress=told)()
+        heading = f"converged answer, refinement {level}"
+        result = prepare(case, travels=endless, progress=under(heading, progress))()
         return {name: values[:: 2**level].copy() for name, values in quantities(result, scenario).items()}
 
     # First the length of the road, coarsely: what comes back from its ends changes the answer like a mesh error.
