@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -11,11 +12,13 @@ class Parameter(NamedTuple):
     """One parameter in words."""
 
     type: str
-    words: str  # with the unit in square brackets
+    words: str  # in one line, with the unit in square brackets
 
 
 def documented(function: Callable[..., Any]) -> dict[str, Parameter]:
     """Read the section `Parameters` of a numpydoc docstring.
+
+    `a, b : float` counts for both; of as many units, `[N/m, N s/m]`, each has its own.
 
     Parameters
     ----------
@@ -25,27 +28,33 @@ def documented(function: Callable[..., Any]) -> dict[str, Parameter]:
     Returns
     -------
     dict of str to Parameter
-        By name, in order; `a, b : float` counts for both. Empty without such a section.
+        By name, in order. Empty without such a section.
 
     Examples
     --------
     >>> documented(documented)["function"]
     Parameter(type='callable', words='A function or a class.')
     """
-    lines = (inspect.getdoc(function) or "").splitlines()
-    found: dict[str, Parameter] = {}
-    if "Parameters" not in lines:
-        return found
-    names: list[str] = []
-    section = lines[lines.index("Parameters") + 2 :]
-    for line, below in zip(section, [*section[1:], ""], strict=True):
-        if below.startswith("---"):
-            break
-        if line and not line.startswith(" "):
-            left, _, kind = line.partition(" : ")
-            names = [name.strip().lstrip("*") for name in left.split(",")]
-            found |= dict.fromkeys(names, Parameter(kind.strip(), ""))
+    _, _, section = (inspect.getdoc(function) or "").partition("Parameters\n----------\n")
+    groups: list[tuple[list[str], str, list[str]]] = []
+    for line in section.partition("\n\n")[0].splitlines():
+        if line.startswith(" "):
+            groups[-1][2].append(line.strip())
         else:
-            said = line.strip()
-            found |= {name: found[name]._replace(words=f"{found[name].words} {said}".strip()) for name in names}
-    return found
+            left, _, kind = line.partition(" : ")
+            groups.append(([name.strip().lstrip("*") for name in left.split(",")], kind.strip(), []))
+    return {
+        name: Parameter(kind, _own_unit(" ".join(lines), place, len(names)))
+        for names, kind, lines in groups
+        for place, name in enumerate(names)
+    }
+
+
+def _own_unit(words: str, place: int, of: int) -> str:
+    """Leave of the units in brackets, one for each of several arguments, that of one of them."""
+
+    def own(found: re.Match[str]) -> str:
+        units = found[1].split(", ")
+        return f"[{units[place]}{found[2]}]" if len(units) == of else found[0]
+
+    return re.sub(r"\[([^\];]+)([^\]]*)\]", own, words)

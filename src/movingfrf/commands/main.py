@@ -9,25 +9,28 @@ import sys
 from cyclopts import CycloptsError
 
 from movingfrf._basics.checks import SolveError
-from movingfrf.commands import profiles, scenarios, schema, studies
 from movingfrf.commands.root import Status, app
 
-# In the order in which messages list them.
+# Module → its commands, in the order in which messages list them. A module is loaded when one of its commands is
+# called for, or help is.
 COMMANDS = (
-    scenarios.new,
-    scenarios.check,
-    schema.schema,
-    scenarios.vehicles,
-    scenarios.run,
-    scenarios.random,
-    scenarios.measure,
-    studies.compare,
-    studies.paper,
-    profiles.profile,
-    profiles.convert,
+    ("scenarios", "new", "check"),
+    ("schema", "schema"),
+    ("scenarios", "vehicles", "run", "random", "measure"),
+    ("studies", "compare", "paper"),
+    ("profiles", "profile", "convert"),
 )
-for _command in COMMANDS:
-    app.command(_command)
+for _module, *_names in COMMANDS:
+    for _name in _names:
+        app.command(f"movingfrf.commands.{_module}:{_name}")
+
+
+def _load_for_help(arguments: list[str]) -> None:
+    """Load every command where all of them are to be listed, each with what it does."""
+    if not arguments or arguments[0] in app.help_flags:
+        for _, *names in COMMANDS:
+            for name in names:
+                app[name]
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -44,6 +47,7 @@ def main(arguments: list[str] | None = None) -> int:
         Exit status.
     """
     try:
+        _load_for_help(sys.argv[1:] if arguments is None else arguments)
         app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
     except KeyboardInterrupt:
         print("movingfrf: interrupted, nothing was written", file=sys.stderr)

@@ -16,6 +16,8 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
 
+from movingfrf._basics.documented import documented
+
 # Default of a key that has none.
 NEEDED = inspect.Parameter.empty
 
@@ -178,13 +180,13 @@ def keys_of(target: Callable[..., Any], *, without: Sequence[str] = ()) -> tuple
     >>> [(key.name, key.type.__name__, key.needed, key.unit) for key in keys_of(Spring)]
     [('stiffness', 'float', True, 'N/m²'), ('damping', 'float', False, 'N s/m²')]
     """
-    words = documented(target)
+    said = documented(target)
     return tuple(
         Key(
             name=name,
             type=_without_none(parameter.annotation),
             default=parameter.default,
-            words=words.get(name, ""),
+            words=said[name].words if name in said else "",
         )
         for name, parameter in inspect.signature(target, eval_str=True).parameters.items()
         if name not in without
@@ -199,51 +201,6 @@ def chosen(given: Mapping[str, Any], keys: Sequence[Key]) -> dict[str, Any]:
 def summary(target: Callable[..., Any]) -> str:
     """First line of a docstring."""
     return (inspect.getdoc(target) or "").split("\n", 1)[0]
-
-
-def documented(target: Callable[..., Any]) -> dict[str, str]:
-    """Words for each argument from the section Parameters of a docstring.
-
-    `a, b : float` counts for both; of as many units, `[N/m, N s/m]`, each has its own.
-
-    Parameters
-    ----------
-    target : callable
-        A function or a class, documented the way NumPy documents.
-
-    Returns
-    -------
-    dict of str to str
-        Name → words, in one line.
-
-    Examples
-    --------
-    >>> from movingfrf.vehicles.rail import bogie
-    >>> documented(bogie)["primary_damping"]
-    'Between one wheelset and the frame, both sides together [N s/m].'
-    """
-    _, _, section = (inspect.getdoc(target) or "").partition("\nParameters\n----------\n")
-    groups: list[tuple[list[str], list[str]]] = []
-    for line in section.partition("\n\n")[0].splitlines():
-        if line.startswith(" "):
-            groups[-1][1].append(line.strip())
-        else:
-            groups.append(([name.strip() for name in line.partition(" : ")[0].split(",")], []))
-    return {
-        name: _own_unit(" ".join(lines), place, len(names))
-        for names, lines in groups
-        for place, name in enumerate(names)
-    }
-
-
-def _own_unit(words: str, place: int, of: int) -> str:
-    """Leave of the units in brackets, one for each of several arguments, that of one of them."""
-
-    def own(found: re.Match[str]) -> str:
-        units = found[1].split(", ")
-        return f"[{units[place]}{found[2]}]" if len(units) == of else found[0]
-
-    return re.sub(r"\[([^\];]+)([^\]]*)\]", own, words)
 
 
 def snake_case(name: str) -> str:

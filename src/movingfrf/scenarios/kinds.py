@@ -16,7 +16,7 @@ from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.rigid import RigidGuideway
 from movingfrf.guideways.track import Track, track
 from movingfrf.roughness.files import read_profile
-from movingfrf.roughness.preparation import Preparation, read_prepared
+from movingfrf.roughness.preparation import prepared, read_prepared
 from movingfrf.roughness.road import Road
 from movingfrf.roughness.spectra.coherence import Coherence, ExponentialCoherence, IsotropicCoherence
 from movingfrf.roughness.spectra.spectrum import Spectrum
@@ -36,9 +36,6 @@ from movingfrf.vehicles.rail import bogie, carriage, wheelset
 from movingfrf.vehicles.trucks import Axle, Unit, WalkingBeam, truck
 from movingfrf.vehicles.vehicle import Vehicle
 
-READING = keys_of(read_profile)
-PREPARING = keys_of(Preparation)
-
 
 def profile(*, interval: tuple[float, float], **given: Any) -> Road:
     """Read a measured profile, and prepare it as far as options ask for it; the description says what was done."""
@@ -47,7 +44,10 @@ def profile(*, interval: tuple[float, float], **given: Any) -> Road:
 
 
 PROFILE = Kind(
-    name="profile", make=profile, keys=(*READING, *PREPARING), words="A measured profile, read from a file."
+    name="profile",
+    make=profile,
+    keys=(*keys_of(read_profile), *keys_of(prepared, without=["profile"])),
+    words="A measured profile, read from a file.",
 )
 
 BEAM = family("beam", Beam, EulerBernoulliBeam, TimoshenkoBeam)
