@@ -13,6 +13,7 @@ __version__ = VERSION
 _WHERE = {
     "EulerBernoulliBeam": "guideways.beams",
     "TimoshenkoBeam": "guideways.beams",
+    "TensionedBeam": "guideways.tensioned",
     "Spring": "guideways.foundations",
     "ShearLayer": "guideways.foundations",
     "OnMass": "guideways.foundations",

@@ -16,6 +16,7 @@ from movingfrf._basics.checks import checking
 from movingfrf.guideways.beams import EulerBernoulliBeam, TimoshenkoBeam
 from movingfrf.guideways.foundations import OnMass, ShearLayer, Spring
 from movingfrf.guideways.rigid import RigidGuideway
+from movingfrf.guideways.tensioned import TensionedBeam
 from movingfrf.guideways.track import track
 from movingfrf.roughness.files import read_profile
 from movingfrf.roughness.preparation import prepared
@@ -108,7 +109,11 @@ def loads(
 # Family → kind → what makes it. `kind` is the Python name in snake_case.
 KINDS: dict[str, dict[str, Callable[..., Any]]] = {
     "guideway": {"track": track, "rigid_guideway": RigidGuideway},
-    "beam": {"euler_bernoulli_beam": EulerBernoulliBeam, "timoshenko_beam": TimoshenkoBeam},
+    "beam": {
+        "euler_bernoulli_beam": EulerBernoulliBeam,
+        "timoshenko_beam": TimoshenkoBeam,
+        "tensioned_beam": TensionedBeam,
+    },
     "foundation": {"spring": Spring, "shear_layer": ShearLayer, "on_mass": OnMass},
     "vehicle": {
         "half_car": half_car,
