@@ -202,6 +202,7 @@ VEHICLES: dict[str, mf.Vehicle] = {
     "full_truck": mf.full_car(**FULL_TRUCK),
     "three_axles": three_axle_truck(),
     "critically_damped_mass": lump(),
+    "sprung_mass": mf.sprung_mass(mass=5750.0, stiffness=1.595e6, damping=1.2e4),
     "footprint": mf.quarter_car(**QUARTER_TRUCK, footprint=0.2),
 }
 

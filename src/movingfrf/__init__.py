@@ -43,6 +43,7 @@ _WHERE = {
     "vehicle_modes": "vehicles.modes",
     "seated": "vehicles.combined",
     "on_paths": "vehicles.combined",
+    "sprung_mass": "vehicles.oscillator",
     "quarter_car": "vehicles.cars",
     "half_car": "vehicles.cars",
     "full_car": "vehicles.cars",

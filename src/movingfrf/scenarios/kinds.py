@@ -31,6 +31,7 @@ from movingfrf.vehicles.combined import convoy, on_paths, seated, train
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.files import read_vehicle
 from movingfrf.vehicles.journey import Journey
+from movingfrf.vehicles.oscillator import sprung_mass
 from movingfrf.vehicles.rail import bogie, carriage, wheelset
 from movingfrf.vehicles.trucks import Axle, Unit, WalkingBeam, truck
 from movingfrf.vehicles.vehicle import Vehicle
@@ -119,6 +120,7 @@ KINDS: dict[str, dict[str, Callable[..., Any]]] = {
         "half_car": half_car,
         "full_car": full_car,
         "quarter_car": quarter_car,
+        "sprung_mass": sprung_mass,
         "truck": truck,
         "wheelset": wheelset,
         "bogie": bogie,
