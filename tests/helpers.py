@@ -106,6 +106,10 @@ GUIDEWAYS: dict[str, Listed] = {
     **{
         f"undamped_{name}": Listed(road, partial(compliance, road), damped=False) for name, road in UNDAMPED.items()
     },
+    "rail_in_heat": Listed(
+        mf.track(mf.TensionedBeam(beam=RAIL, force=-7.5e5), BALLAST),
+        lambda kappa, omega: 1 / (6.42e6 * kappa**4 - 7.5e5 * kappa**2 - 60.2 * omega**2 + 8e4j * omega + 1e8),
+    ),
     "taut_string": Listed(
         written_on("guideways")["TautString"](tension=2e4, mass=1.35, stiffness=2e3, damping=60.0),
         lambda kappa, omega: 1 / (2e4 * kappa**2 - 1.35 * omega**2 + 60j * omega + 2e3),
@@ -198,6 +202,7 @@ VEHICLES: dict[str, mf.Vehicle] = {
     "full_truck": mf.full_car(**FULL_TRUCK),
     "three_axles": three_axle_truck(),
     "critically_damped_mass": lump(),
+    "sprung_mass": mf.sprung_mass(mass=5750.0, stiffness=1.595e6, damping=1.2e4),
     "footprint": mf.quarter_car(**QUARTER_TRUCK, footprint=0.2),
 }
 

@@ -30,6 +30,7 @@ duration = 4.0
 
 TEXTS = {
     "catalogue": '[vehicle]\nkind = "catalogue"\nname = "half_truck"\n',
+    "sprung_mass": '[vehicle]\nkind = "sprung_mass"\nmass = 5750.0\nstiffness = 1.6e6\nwheel_mass = 500.0\n',
     "truck": """
 [vehicle]
 kind = "truck"

@@ -13,6 +13,7 @@ __version__ = VERSION
 _WHERE = {
     "EulerBernoulliBeam": "guideways.beams",
     "TimoshenkoBeam": "guideways.beams",
+    "TensionedBeam": "guideways.tensioned",
     "Spring": "guideways.foundations",
     "ShearLayer": "guideways.foundations",
     "OnMass": "guideways.foundations",
@@ -42,6 +43,7 @@ _WHERE = {
     "vehicle_modes": "vehicles.modes",
     "seated": "vehicles.combined",
     "on_paths": "vehicles.combined",
+    "sprung_mass": "vehicles.oscillator",
     "quarter_car": "vehicles.cars",
     "half_car": "vehicles.cars",
     "full_car": "vehicles.cars",

@@ -74,4 +74,5 @@ FAULTS = [
         "path=side,\n                across=aside[side]",
         "path=side,\n                across=aside[1 - side]",
     ),
+    Fault("spring without its dashpot", "vehicles/oscillator.py", "damping=damping, footprint", "footprint"),
 ]

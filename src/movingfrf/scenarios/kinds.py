@@ -14,6 +14,7 @@ from movingfrf.guideways.files import read_sampled_guideway
 from movingfrf.guideways.foundations import Foundation, OnMass, ShearLayer, Spring
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.rigid import RigidGuideway
+from movingfrf.guideways.tensioned import TensionedBeam
 from movingfrf.guideways.track import Track, track
 from movingfrf.roughness.files import read_profile
 from movingfrf.roughness.preparation import prepared, read_prepared
@@ -32,6 +33,7 @@ from movingfrf.vehicles.combined import convoy, on_paths, seated, train
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.files import read_vehicle
 from movingfrf.vehicles.journey import Journey
+from movingfrf.vehicles.oscillator import sprung_mass
 from movingfrf.vehicles.rail import bogie, carriage, wheelset
 from movingfrf.vehicles.trucks import Axle, Unit, WalkingBeam, truck
 from movingfrf.vehicles.vehicle import Vehicle
@@ -50,7 +52,7 @@ PROFILE = Kind(
     words="A measured profile, read from a file.",
 )
 
-BEAM = family("beam", Beam, EulerBernoulliBeam, TimoshenkoBeam)
+BEAM = family("beam", Beam, EulerBernoulliBeam, TimoshenkoBeam, TensionedBeam)
 FOUNDATION = family("foundation", Foundation, Spring, ShearLayer, OnMass)
 TRACK = family("track", Track, track)
 SAMPLED = Kind.of(read_sampled_guideway, name="sampled_guideway")
@@ -61,6 +63,7 @@ VEHICLE = family(
     half_car,
     full_car,
     quarter_car,
+    sprung_mass,
     truck,
     wheelset,
     bogie,

@@ -1,0 +1,103 @@
+"""A beam under axial force: Hetényi's basin, Kerr's critical speed, a wire without stiffness, buckling."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import movingfrf as mf
+from movingfrf.scenarios.reading import parse_scenario
+from tests.helpers import PAVEMENT, RAIL, SOIL, TIMOSHENKO, written_on
+
+BENDING, MASS, STIFFNESS = RAIL.bending_stiffness, RAIL.mass, 5.0e7
+BED = mf.Spring(stiffness=STIFFNESS)
+LIMIT = 2 * np.sqrt(STIFFNESS * BENDING)  # 3.6e7 N
+
+
+def laid(force, foundation=BED, beam=RAIL):
+    return mf.track(mf.TensionedBeam(beam=beam, force=force), foundation)
+
+
+@pytest.mark.parametrize("share", [-0.9, -0.02, 0.0, 0.05, 0.9])
+def test_basin_at_rest(share):
+    """P e^{−αx} (β cos βx + α sin βx)/(4 EI αβ (α² + β²)), α², β² = √(k/4EI) ± N/4EI (Hetényi 1946, chapter 6)."""
+    force = share * LIMIT
+    half, add = np.sqrt(STIFFNESS / (4 * BENDING)), force / (4 * BENDING)
+    alpha, beta = np.sqrt(half + add), np.sqrt(half - add)
+    x = np.linspace(-8.0, 8.0, 161)
+    z = np.abs(x)
+    expected = np.exp(-alpha * z) * (beta * np.cos(beta * z) + alpha * np.sin(beta * z))
+    expected /= 4 * BENDING * alpha * beta * (alpha**2 + beta**2)
+    found = laid(force).moving_frf(x, 0.0, [0.0])[0]
+    assert np.abs(found - expected).max() < 1e-11 * expected.max()
+
+
+@pytest.mark.parametrize("share", [-0.99, -0.02, 0.0, 0.05, 3.0])
+def test_critical_speed(share):
+    """√((2 √(k EI) + N)/m): Kerr 1972."""
+    expected = np.sqrt((1 + share) * LIMIT / MASS)
+    assert laid(share * LIMIT).critical_speed == pytest.approx(expected, rel=1e-9)
+
+
+def test_without_bending_stiffness_it_is_a_string():
+    """Of the page on guideways, in closed form; stiffness of 1e-3 N m² changes the wire by (EI k)^½/T = 2e-5."""
+    wire = {"mass": 1.35, "stiffness": 200.0, "damping": 20.0}
+    string = written_on("guideways")["TautString"](tension=2.0e4, **wire)
+    thin = mf.EulerBernoulliBeam(bending_stiffness=1e-3, mass=wire["mass"])
+    beam = laid(2.0e4, mf.Spring(stiffness=wire["stiffness"], damping=wire["damping"]), thin)
+    assert beam.critical_speed == pytest.approx(string.critical_speed, rel=1e-4)
+    x, omega = [0.0, 3.0, -3.0, 20.0], np.array([0.0, 5.0, 40.0])
+    for speed in (0.0, 60.0):
+        one, other = (road.moving_frf(x, speed, omega) for road in (beam, string))
+        assert np.abs(one - other).max() < 3e-4 * np.abs(other).max()
+
+
+def test_too_much_compression_buckles():
+    laid(-(1 - 1e-9) * LIMIT)
+    length = f"{2 * np.pi * (BENDING / STIFFNESS) ** 0.25:.3g}"
+    with pytest.raises(ValueError, match=rf"beam must stay straight .* buckles in waves of {length} m"):
+        laid(-(1 + 1e-9) * LIMIT)
+
+
+def test_any_beam_and_any_foundation():
+    """Tension is a shear layer that hangs on the beam, whatever the beam: N κ² is G_p κ²."""
+    for beam in (PAVEMENT, TIMOSHENKO):
+        sheared = mf.track(beam, mf.ShearLayer(stiffness=8.0e6, damping=3.0e4, shear_stiffness=2.0e6))
+        one, other = (road.moving_frf([0.0, 2.0], 30.0, [3.0, 90.0]) for road in (laid(2.0e6, SOIL, beam), sheared))
+        np.testing.assert_allclose(one, other, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"beam": "rail", "force": 0.0}, "beam must be a beam, got 'rail'"),
+        ({"beam": RAIL, "force": np.inf}, "force must be a finite number, got inf N"),
+    ],
+)
+def test_refused(given, message):
+    with pytest.raises(ValueError, match=message):
+        mf.TensionedBeam(**given)
+
+
+def test_in_a_scenario():
+    text = """
+[guideway.beam]
+kind = "tensioned_beam"
+force = -7.5e5
+[guideway.beam.beam]
+kind = "euler_bernoulli_beam"
+bending_stiffness = 6.42e6
+mass = 60.2
+[guideway.foundation]
+kind = "spring"
+stiffness = 5.0e7
+[loads]
+positions = [0.0]
+[[loads.force]]
+kind = "constant"
+force = 1e5
+[run]
+speed = 30.0
+duration = 1.0
+"""
+    assert parse_scenario(text).guideway == laid(-7.5e5)
