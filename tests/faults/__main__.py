@@ -29,6 +29,7 @@ SELECTION = [
     "tests/laws/test_guideways.py",
     "tests/laws/test_properties.py",
     "tests/laws/test_truncation.py",
+    "tests/laws/test_cases.py",
     "tests/laws/test_random.py",
     "tests/laws/test_random_statistics.py",
     "tests/test_roads.py",
@@ -76,6 +77,7 @@ SHOWN = ("reports/", "commands/", "results/files", "_basics/wording")
 # These first where the fault lies in the independent way, and last otherwise.
 REFERENCE = [
     "tests/stepping/test_elements.py",
+    "tests/stepping/test_enveloping.py",
     "tests/stepping/test_sampled.py",
     "tests/stepping/test_coupled.py",
     "tests/stepping/test_coupled_laws.py",

@@ -14,7 +14,7 @@ FAULTS = [
     ),
     # What a table of a scenario can be.
     Fault("key that may be left out", "scenarios/kind.py", "=_without_none(", "=("),
-    Fault("unit of the neighbour", "scenarios/kind.py", "[{units[place]}", "[{units[0]}"),
+    Fault("unit of the neighbour", "_basics/documented.py", "[{units[place]}", "[{units[0]}"),
     Fault("part of a road for no journey", "scenarios/reading.py", "key.item == family.makes", "False"),
     Fault("kind that need not be said", "scenarios/schema.py", "kind.name != family.default else []", "0 else []"),
     Fault("infinity that is a mistake", "scenarios/schema.py", '["number", "null"]', '"number"'),
