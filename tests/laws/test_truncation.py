@@ -66,7 +66,9 @@ def test_a_truncation_at_zero_is_a_rigid_road():
     surface = mf.bump(height=0.01, width=1.0, at=5.0, length=30.0)
     truck = mf.half_car(**HALF_TRUCK)
     travel = {"speed": 10.0, "duration": 1.0, "start": 2.5, "blend": 0.0}
-    with pytest.warns(mf.ValidityWarning, match="truncation"):
+    with pytest.warns(mf.ValidityWarning, match="truncation") as warned:
         cut = mf.simulate(ROAD, truck, surface, **travel, truncation=0.0)
+    # A warning points at who called the package.
+    assert {warning.filename for warning in warned} == {__file__}
     rigid = mf.simulate(mf.RigidGuideway(), truck, surface, **travel)
     assert cut.contact_force.values == pytest.approx(rigid.contact_force.values, rel=1e-6, abs=2.0)
