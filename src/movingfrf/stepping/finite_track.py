@@ -381,6 +381,10 @@ def _layers(track: Track) -> _Layers:
             springs.append(part)
         elif isinstance(part, Real):
             masses.append(float(part))
+        else:
+            with checking() as check:
+                kinds = "Spring, ShearLayer or OnMass"
+                check.refuse("track", f"must stand on a {kinds} to be cut into elements, got {shown(part)}")
     count = len(masses)
     tables = np.zeros((3, count, count))
     for n, spring in enumerate(springs):
