@@ -110,6 +110,10 @@ GUIDEWAYS: dict[str, Listed] = {
         mf.track(mf.TensionedBeam(beam=RAIL, force=-7.5e5), BALLAST),
         lambda kappa, omega: 1 / (6.42e6 * kappa**4 - 7.5e5 * kappa**2 - 60.2 * omega**2 + 8e4j * omega + 1e8),
     ),
+    "relaxing_pads": Listed(
+        mf.track(RAIL, mf.RelaxingSpring(stiffness=1e8, relaxing_stiffness=2e9, damping=1e5)),
+        lambda kappa, omega: 1 / (6.42e6 * kappa**4 - 60.2 * omega**2 + 1e8 + 2e14j * omega / (2e9 + 1e5j * omega)),
+    ),
     "taut_string": Listed(
         written_on("guideways")["TautString"](tension=2e4, mass=1.35, stiffness=2e3, damping=60.0),
         lambda kappa, omega: 1 / (2e4 * kappa**2 - 1.35 * omega**2 + 60j * omega + 2e3),

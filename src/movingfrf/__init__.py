@@ -20,6 +20,7 @@ _WHERE = {
     "track": "guideways.track",
     "Guideway": "guideways.guideway",
     "at_offsets": "guideways.guideway",
+    "RelaxingSpring": "guideways.relaxing",
     "RigidGuideway": "guideways.rigid",
     "Contact": "vehicles.contact",
     "Vehicle": "vehicles.vehicle",

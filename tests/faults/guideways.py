@@ -34,6 +34,7 @@ FAULTS = [
         "{(2, 0): self.shear_stiffness}",
         "{(0, 0): self.shear_stiffness}",
     ),
+    Fault("spring beside its dashpot", "guideways/relaxing.py", ").in_series(Ratio(", ") + (Ratio("),
     Fault("tension for compression", "guideways/tensioned.py", "{(2, 0): self.force}", "{(2, 0): -self.force}"),
     Fault("buckled track let in", "guideways/critical.py", "if positive.size else", "if False else"),
     Fault("layers side by side", "guideways/foundations.py", ".in_series(layer)", " + layer"),

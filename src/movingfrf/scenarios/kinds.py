@@ -13,6 +13,7 @@ from movingfrf.guideways.beams import Beam, EulerBernoulliBeam, TimoshenkoBeam
 from movingfrf.guideways.files import read_sampled_guideway
 from movingfrf.guideways.foundations import Foundation, OnMass, ShearLayer, Spring
 from movingfrf.guideways.guideway import Guideway
+from movingfrf.guideways.relaxing import RelaxingSpring
 from movingfrf.guideways.rigid import RigidGuideway
 from movingfrf.guideways.tensioned import TensionedBeam
 from movingfrf.guideways.track import Track, track
@@ -53,7 +54,7 @@ PROFILE = Kind(
 )
 
 BEAM = family("beam", Beam, EulerBernoulliBeam, TimoshenkoBeam, TensionedBeam)
-FOUNDATION = family("foundation", Foundation, Spring, ShearLayer, OnMass)
+FOUNDATION = family("foundation", Foundation, Spring, ShearLayer, OnMass, RelaxingSpring)
 TRACK = family("track", Track, track)
 SAMPLED = Kind.of(read_sampled_guideway, name="sampled_guideway")
 GUIDEWAY = family("guideway", Guideway, track, RigidGuideway, SAMPLED, finite_track, finite_plate, default="track")
