@@ -16,6 +16,7 @@ from movingfrf.commands.root import Status, app
 COMMANDS = (
     ("scenarios", "new", "check"),
     ("schema", "schema"),
+    ("kinds", "kinds"),
     ("scenarios", "vehicles", "run", "random", "measure"),
     ("studies", "compare", "paper"),
     ("profiles", "profile", "convert"),
