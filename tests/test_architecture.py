@@ -84,7 +84,7 @@ def test_no_circles():
         ("vehicles.vehicle", "def of(result: 'movingfrf.results.labels.Label'): ..."),
         ("vehicles.vehicle", "import_module('movingfrf.results.labels')"),
         ("results.files", "from movingfrf.metrics.measures import measures"),
-        ("stepping.newmark", "from movingfrf.response.line import SpectralGrid"),
+        ("stepping.newmark", "from movingfrf.response.line import Line"),
         ("stepping.newmark", "from movingfrf.guideways.waves import Ratio"),
         ("stepping.newmark", "from movingfrf.guideways import waves"),
         ("stepping.newmark", "def late():\n    from movingfrf.guideways import critical"),

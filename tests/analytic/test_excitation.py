@@ -95,6 +95,23 @@ def test_paths_of_a_profile_without_columns_are_one():
     np.testing.assert_array_equal(left, right)
 
 
+@pytest.mark.parametrize(("footprint", "cams"), [(0.012, 0.0), (0.2, 0.0), (0.2, 0.5)])
+def test_at_the_end_of_a_long_climb_too(footprint, cams):
+    """A hundred kilometres, five hundred metres up: of a smooth climb an average is the road but for its bend."""
+    length, climb = 1e5, 500.0
+    stations = np.linspace(0.0, length, 100_001)
+    road = mf.Profile(stations, 0.5 * climb * (1 - np.cos(np.pi * stations / length)))
+    touch = Touch(positions=np.zeros(1), paths=[0], footprints=np.array([footprint]), cams=np.array([cams]))
+    plain = Touch(positions=np.zeros(1), paths=[0], footprints=np.zeros(1), cams=np.zeros(1))
+    travelled = np.arange(99_000.0, 99_900.0, 0.1)
+    averaged, point = (excite(road, t, start=0.0, distance=99_950.0, blend=0.0) for t in (touch, plain))
+    # Half of the mean square distance times the curvature, 2.5e-7 1/m at its largest; and rounding of 500 m.
+    spread = (footprint**2 / 24 + cams**2 / 8) * 2.5e-7
+    apart = averaged.elevation(travelled) - point.elevation(travelled)
+    assert np.abs(apart).max() < spread + 2e-10
+    np.testing.assert_allclose(averaged.rate(travelled, 1.0), point.rate(travelled, 1.0), atol=1e-9)
+
+
 def test_far_above_the_sea_a_footprint_averages_as_well():
     """The area under a road grows with its height; what is averaged is about the datum."""
     high = mf.Profile(SURFACE.stations, SURFACE.columns[:, 0] + 4000.0)

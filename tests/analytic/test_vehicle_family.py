@@ -13,7 +13,7 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.response.stability import along_the_axis, growing_vibrations
-from movingfrf.response.system import joined
+from movingfrf.response.system import System
 from tests.analytic.vehicle_parts import (
     BOGIE,
     COACH,
@@ -224,8 +224,8 @@ def test_when_a_moving_mass_is_unstable(speed, mass):
     ]
     phase = np.unwrap(np.angle(1 - curve**2 * mass * road.moving_frf(np.array(0.0), speed, curve)))
     expected = round(-(phase[-1] - phase[0]) / np.pi)
-    system = joined(road, mf.wheelset(mass=mass), speed)
-    assert growing_vibrations(system, system.at(along_the_axis(system.vehicle, speed))) == expected
+    system = System(guideway=road, vehicle=mf.wheelset(mass=mass), speed=speed)
+    assert growing_vibrations(system, [system.at(along_the_axis(system.vehicle, speed))]) == expected
     assert (expected == 2) == (speed > 177.5 and mass >= {200.0: 2e5, 250.0: 2e4, 350.0: 2e3}.get(speed, np.inf))
 
 
@@ -233,8 +233,8 @@ def test_when_a_moving_mass_is_unstable(speed, mass):
 @pytest.mark.parametrize("name", ["coach", "train", "full truck", "one of two"])
 def test_what_travels_slowly_on_rigid_wheels_is_stable(name, road):
     """Far below the critical speed nothing feeds a vibration, however many wheels turn the determinant."""
-    system = joined(DAMPED[road], RIGID[name], 30.0)
-    assert growing_vibrations(system, system.at(along_the_axis(system.vehicle, 30.0))) == 0
+    system = System(guideway=DAMPED[road], vehicle=RIGID[name], speed=30.0)
+    assert growing_vibrations(system, [system.at(along_the_axis(system.vehicle, 30.0))]) == 0
 
 
 def test_a_heavy_wheel_under_next_to_nothing_is_looked_at_too():
@@ -249,8 +249,8 @@ def test_a_heavy_wheel_under_next_to_nothing_is_looked_at_too():
     road = DAMPED["euler_bernoulli_winkler"]
     counts = []
     for vehicle in (car, mf.wheelset(mass=5000.0)):
-        system = joined(road, vehicle, 300.0)
-        counts.append(growing_vibrations(system, system.at(along_the_axis(vehicle, 300.0))))
+        system = System(guideway=road, vehicle=vehicle, speed=300.0)
+        counts.append(growing_vibrations(system, [system.at(along_the_axis(vehicle, 300.0))]))
     assert counts == [2, 2]
 
 
@@ -259,8 +259,8 @@ def test_many_rigid_wheels_are_counted_like_very_stiff_ones():
     road, counts = DAMPED["euler_bernoulli_winkler"], []
     for stiffness in (np.inf, 1e12):
         train = mf.train(car=mf.carriage(**COACH, contact_stiffness=stiffness), count=2, spacing=25.0)
-        system = joined(road, train, 300.0)
-        counts.append(growing_vibrations(system, system.at(along_the_axis(train, 300.0))))
+        system = System(guideway=road, vehicle=train, speed=300.0)
+        counts.append(growing_vibrations(system, [system.at(along_the_axis(train, 300.0))]))
     assert counts[0] == counts[1] > 0
 
 

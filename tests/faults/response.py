@@ -30,14 +30,14 @@ FAULTS = [
     Fault(
         "road that does not stiffen",
         "response/system.py",
-        "frf=self.frf * truncation.taper(self.omega)",
-        "frf=self.frf * 1.0",
+        "truncation.admitted(tables.frf, tables.omega)",
+        "tables.frf",
     ),
     Fault(
         "load's road that does not fade",
         "response/system.py",
-        "np.moveaxis(frf, 0, -1) * truncation.taper(omega)",
-        "np.moveaxis(frf, 0, -1) * 1.0",
+        "truncation.admitted(np.moveaxis(frf, 0, -1), omega)",
+        "np.moveaxis(frf, 0, -1)",
     ),
     Fault("whole weight at the start", "response/line.py", "padded[:, 0] *= 0.5", "padded[:, 0] *= 1.0"),
     Fault(
@@ -60,7 +60,7 @@ FAULTS = [
     Fault(
         "sag leaves the loads alone",
         "response/survey.py",
-        "solved(at_rest.matrices, system.vehicle.static_loads[:, None] + 0j)[:, 0].real",
+        "at_rest.shared(system.vehicle.static_loads[:, None] + 0j)[:, 0].real",
         "system.vehicle.static_loads",
     ),
     Fault("steady basin reversed", "response/survey.py", ".real @ load", ".real.T @ load"),
@@ -73,9 +73,16 @@ FAULTS = [
     ),
     Fault("ports without a diagonal", "response/system.py", "matrices[port, port] += 1.0", "pass"),
     Fault("Cramer's rule turned", "response/batches.py", "a * second - c * first", "a * second + c * first"),
+    Fault(
+        "truncation at zero that is none",
+        "response/truncation.py",
+        "omega.size if self.frequency else 0",
+        "omega.size",
+    ),
+    Fault("stretches that do not join", "response/stability.py", "first + steps + 1]", "first + steps]"),
     Fault("loads all at once", "response/system.py", "self.loads.size * self.points.size", "1"),
     Fault("stability: the arc left out", "response/stability.py", "if not rigid:", "if True:"),
-    Fault("unstable taken for stable", "response/stability.py", "round(-float(turned)", "round(float(turned)"),
+    Fault("unstable taken for stable", "response/stability.py", "round(-turned", "round(turned"),
     Fault("stability not looked at", "response/stability.py", "    if growing:\n", "    if False:\n"),
     # Random roads.
     Fault("rear wheel first", "roughness/excitation.py", "np.exp(1j * np.outer(self", "np.exp(-1j * np.outer(self"),
@@ -116,7 +123,7 @@ FAULTS = [
         "shared.swapaxes(1, 2)) > 9 + TOLERANCES.semi",
     ),
     Fault("damping always blamed", "response/random.py", "undamped: float = 1e-9", "undamped: float = 1e9"),
-    Fault("threads that wait", "response/solve.py", "with unthreaded(entries):", "with unthreaded(1):"),
+    Fault("threads that wait", "response/solve.py", "with unthreaded(system.entries):", "with unthreaded(1):"),
     Fault("coarse panels", "response/quadrature.py", "unresolved: float = 1e-3", "unresolved: float = 1e3"),
     Fault("panels that overlap", "response/quadrature.py", "= low[~rough], high", "= low[~rough] - 0.01, high"),
     Fault(

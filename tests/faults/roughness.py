@@ -160,7 +160,10 @@ FAULTS = [
         "(self.start - position)",
     ),
     Fault("rate of the blending missing", "roughness/excitation.py", "smooth_step_slope(setting_in)", "0.0"),
-    Fault("cams one behind the other only", "roughness/excitation.py", "0.5 * (behind + ahead)", "behind"),
+    Fault("average about the datum", "roughness/excitation.py", "pieces[3] -= height", "height = 0.0"),
+    Fault(
+        "cams one behind the other only", "roughness/excitation.py", "[[-1.0], [1.0]] if cams", "[[-1.0]] if cams"
+    ),
     Fault("footprint twice as long in space", "roughness/excitation.py", "0.5 * footprint\n", "1.0 * footprint\n"),
     Fault("road that levels off at its end", "roughness/excitation.py", "(rising, high)", "(0.0, high)"),
     Fault(

@@ -1,5 +1,7 @@
 """Many cases at once are the same as one after the other, for whatever is solved."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -7,8 +9,9 @@ import movingfrf as mf
 from movingfrf.response import batches
 from movingfrf.response.line import Line
 from movingfrf.response.solve import solve
-from movingfrf.response.survey import survey
-from movingfrf.response.system import Prescribed, joined
+from movingfrf.response.stability import _turned, along_the_axis, stretches
+from movingfrf.response.survey import Excited, survey
+from movingfrf.response.system import Prescribed, System
 from movingfrf.response.truncation import Truncation
 from tests.helpers import DAMPED, VEHICLES
 
@@ -24,13 +27,21 @@ def records(cases, ports):
     return freely * np.linspace(0.0, 1.0, LINE.samples) ** 2
 
 
+# A train of two parts, and a wheel that follows the road, are among them.
+CARRIERS = VEHICLES | {
+    "train": mf.convoy([VEHICLES["half_truck"], VEHICLES["quarter_truck"]], gaps=8.0),
+    "wheelset": mf.wheelset(mass=1500.0),
+}
+
+
 @pytest.mark.parametrize(
-    "name", ["quarter_truck", "half_truck", "three_axles", "critically_damped_mass", "full_truck"]
+    "name",
+    ["quarter_truck", "half_truck", "three_axles", "critically_damped_mass", "full_truck", "train", "wheelset"],
 )
 def test_vehicles(name):
     """Three cases, two of them in a second axis: spectra, solution, histories and survey."""
-    system = joined(ROAD, VEHICLES[name], 20.0)
-    roads = records(4, len(VEHICLES[name].contacts)).reshape(2, 2, -1, LINE.samples)
+    system = System(guideway=ROAD, vehicle=CARRIERS[name], speed=20.0)
+    roads = records(4, len(CARRIERS[name].contacts)).reshape(2, 2, -1, LINE.samples)
     together = LINE.spectra(roads)
     at_once = solve(system, LINE.omega(), together, truncation=CUT)
     histories = at_once.histories(LINE)
@@ -41,8 +52,8 @@ def test_vehicles(name):
         for mine, other in zip(alone.histories(LINE), histories, strict=True):
             np.testing.assert_allclose(mine.values, other.values[index], atol=1e-9 * np.abs(other.values).max())
     # One road is rigid from where on it may be for each of them.
-    found = [survey(system, LINE, together[index], None).truncation for index in np.ndindex(2, 2)]
-    of_all = survey(system, LINE, together, None).truncation
+    found = [survey(system, Excited(LINE, together[index], None)).truncation for index in np.ndindex(2, 2)]
+    of_all = survey(system, Excited(LINE, together, None)).truncation
     assert of_all.frequency == max(one.frequency for one in found)
 
 
@@ -54,7 +65,7 @@ def test_prescribed_forces():
     np.testing.assert_allclose(at_once, alone, atol=1e-13 * np.abs(at_once).max())
 
 
-@pytest.mark.parametrize("ports", [1, 2, 3, 5])
+@pytest.mark.parametrize("ports", [1, 2, 3, 5, 17])
 def test_small_matrices(ports):
     """Products and solutions, frequency last, are those of NumPy, frequency first; any number of cases."""
     random = np.random.default_rng(0)
@@ -69,10 +80,51 @@ def test_small_matrices(ports):
     np.testing.assert_allclose(batches.multiplied(matrices, matrices), square, atol=1e-12)
 
 
+def test_a_path_in_stretches_turns_as_the_whole():
+    """Of many contacts the path along the axis is evaluated stretch by stretch."""
+    system = System(guideway=ROAD, vehicle=CARRIERS["train"], speed=20.0)
+    path = along_the_axis(system.vehicle, system.speed)
+    whole = _turned(system, system.at(path))
+    for most in (3, 16, 101):
+        cut = stretches(path, most)
+        assert max(piece.size for piece in cut) <= most
+        assert all(piece.size % 2 for piece in cut)
+        assert sum(_turned(system, system.at(piece)) for piece in cut) == pytest.approx(whole, abs=1e-9)
+
+
+def test_what_has_no_answer_is_refused_though_the_road_is_rigid():
+    """Beyond the truncation there is no deflection to look at."""
+    system = System(guideway=ROAD, vehicle=VEHICLES["quarter_truck"], speed=20.0)
+    omega = LINE.omega()[500:520]
+    with pytest.raises(mf.SolveError, match=r"no finite response at \d"):
+        solve(system, omega, np.full((1, omega.size), np.nan + 0j), truncation=Truncation(frequency=1.0))
+
+
+def test_many_contacts_take_little_memory_before_they_are_solved():
+    """Tables of a hundred contacts have ten thousand entries at each frequency."""
+    wheels = mf.Vehicle(
+        mass=1000.0 * np.eye(100),
+        damping=np.zeros((100, 100)),
+        stiffness=np.zeros((100, 100)),
+        contact_map=np.eye(100),
+        contacts=[mf.Contact(position=-2.0 * n, stiffness=3e6, damping=3e4) for n in range(100)],
+        vertical=np.ones(100),
+        dof_names=[f"wheel_{n}" for n in range(100)],
+    )
+    system = System(guideway=ROAD, vehicle=wheels, speed=20.0)
+    line = Line(samples=500, time_step=2e-3)
+    excited = Excited(line, line.spectra(np.ones((1, 100, 500))), 70.0)
+    system.dynamics  # noqa: B018 (computed once, and not counted)
+    tracemalloc.start()
+    survey(system, excited)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    # All at once they took 420 MB.
+    assert peak < 120e6
+
+
 def test_many_loads_take_little_memory():
     """The matrices of a hundred loads and a hundred points are made for few frequencies at a time."""
-    import tracemalloc
-
     places = -0.5 * np.arange(100.0)
     force = np.repeat(np.sin(0.1 * np.arange(400.0))[:, None], 100, axis=1)
     tracemalloc.start()

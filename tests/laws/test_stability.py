@@ -5,7 +5,7 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.response.stability import along_the_axis, growing_vibrations
-from movingfrf.response.system import joined
+from movingfrf.response.system import System
 from tests.helpers import DAMPED, QUARTER_TRUCK
 
 LIVELY = mf.track(
@@ -15,8 +15,8 @@ SLACK = QUARTER_TRUCK | {"suspension_stiffness": 1.5e6, "suspension_damping": 3e
 
 
 def count(road, vehicle, speed):
-    system = joined(road, vehicle, speed)
-    return growing_vibrations(system, system.at(along_the_axis(vehicle, speed)))
+    system = System(guideway=road, vehicle=vehicle, speed=speed)
+    return growing_vibrations(system, [system.at(along_the_axis(vehicle, speed))])
 
 
 def wheels(number, gap, damping):

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields, is_dataclass
 from functools import wraps
 from typing import Any, TypeVar
+
+import numpy as np
 
 Implied = TypeVar("Implied")
 
@@ -26,7 +29,7 @@ def remembered(compute: Callable[[Any], Implied]) -> Callable[[Any], Implied]:
     Parameters
     ----------
     compute : callable
-        The method; below `property`, if it is one. What it returns is shared, so it must not be changed.
+        The method; below `property`, if it is one. What it returns is shared: arrays in it are made read-only.
 
     Returns
     -------
@@ -57,7 +60,20 @@ def remembered(compute: Callable[[Any], Implied]) -> Callable[[Any], Implied]:
         implied: dict[str, Implied] = value._implied
         name = compute.__name__
         if name not in implied:
-            implied[name] = compute(value)
+            implied[name] = _sealed(compute(value))
         return implied[name]
 
     return recalled
+
+
+def _sealed(implied: Implied) -> Implied:
+    """Make the arrays in a value read-only: those of tuples and of dataclasses too."""
+    if isinstance(implied, np.ndarray):
+        implied.setflags(write=False)
+    elif isinstance(implied, tuple):
+        for part in implied:
+            _sealed(part)
+    elif is_dataclass(implied):
+        for field in fields(implied):
+            _sealed(getattr(implied, field.name))
+    return implied

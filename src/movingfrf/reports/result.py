@@ -15,7 +15,7 @@ from movingfrf.reports.loaded import loaded_method, loaded_summary, loaded_table
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Setting
 from movingfrf.reports.ways import is_stepped, way_settings
-from movingfrf.results.labels import duration_of, kind_of, time_step_of
+from movingfrf.results.labels import HISTORIES, duration_of, kind_of, time_step_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,8 +39,16 @@ def render(result: xr.Dataset, *, guideway: Guideway | None, scenario_text: str 
     -------
     str
         One HTML page without references to anything outside it. Equal input gives equal text.
+
+    Raises
+    ------
+    ValueError
+        If it is a result of another kind.
     """
-    coupled = kind_of(result) == "coupled"
+    kind = kind_of(result)
+    if kind not in HISTORIES:
+        raise ValueError(f"result must be of a kind that has histories, {' or '.join(HISTORIES)}, got {kind}")
+    coupled = kind == "coupled"
     with drawing():
         figures = of_coupled(result, guideway) if coupled else of_loads(result, guideway)
     return page(

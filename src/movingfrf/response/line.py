@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -173,9 +174,11 @@ class Line:
             Records of shape (*case, port, time), and the largest value, as it wraps around, within a hundredth of
             the period near its end (not at the very end, where the ripple that precedes a jump at t = 0 lies).
         """
-        ports, rows = spectra.shape[:-1], spectra.reshape(-1, spectra.shape[-1])
-        values = np.empty((len(rows), self.samples))
-        wrapped = np.empty(len(rows))
+        ports = spectra.shape[:-1]
+        rows = spectra.reshape(math.prod(ports), spectra.shape[-1])
+        values, wrapped = np.zeros((len(rows), self.samples)), np.zeros(len(rows))
+        if not rows.size:
+            return Histories(values.reshape(*ports, self.samples), wrapped.reshape(ports))
         last = self.padded // 100 + 1
         memory = self.scratch() if scratch is None else scratch
         factor = (1j * self.omega(slice(rows.shape[1]))) ** derivative if derivative else None

@@ -29,7 +29,7 @@ from movingfrf.response.quadrature import Lines, Unresolved, resolved
 from movingfrf.response.solve import solve
 from movingfrf.response.statistics import lift_off, lifting_off, peak_factor, spectral_rate
 from movingfrf.response.survey import survey
-from movingfrf.response.system import System, joined
+from movingfrf.response.system import System
 from movingfrf.response.transfer import BYTES_PER_VALUE, coordinates
 from movingfrf.results.findings import Finding
 from movingfrf.results.labels import RANDOM_QUANTITIES, attributes, labelled, turned
@@ -192,7 +192,7 @@ def random_response(
         if wanted is not None and not check.faults and not (wanted.size and wanted.min() >= 0):
             least = f"{wanted.min():g} Hz" if wanted.size else "none"
             check.refuse("frequency", f"must hold frequencies of at least zero [Hz], got {least}")
-    system = joined(guideway, vehicle, speed)
+    system = System(guideway=guideway, vehicle=vehicle, speed=speed)
     progress("steady state", 0.0)
     surveyed = survey(system)
     steady = surveyed.steady

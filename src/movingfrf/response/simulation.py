@@ -12,8 +12,8 @@ from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.line import Line, require_record
 from movingfrf.response.solve import solve
-from movingfrf.response.survey import survey
-from movingfrf.response.system import joined
+from movingfrf.response.survey import Excited, survey
+from movingfrf.response.system import System
 from movingfrf.results.labels import attributes, labelled, turned
 from movingfrf.roughness.excitation import Touch, excite
 from movingfrf.roughness.profile import Profile
@@ -164,8 +164,8 @@ def driven(
     roughness = line.spectra(seen)
 
     progress("steady state", 0.0)
-    system = joined(guideway, vehicle, journey.speed)
-    surveyed = survey(system, line, roughness, journey.truncation)
+    system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)
+    surveyed = survey(system, Excited(line, roughness, journey.truncation))
     response = solve(system, line.omega(), roughness, truncation=surveyed.truncation, progress=progress)
     progress("histories", 0.0)
     force, deflection, motion, acceleration = response.histories(line)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -35,17 +34,8 @@ class Solvable(Protocol[Answer]):
         """Entries of a matrix at one frequency: they decide how many frequencies are solved at a time."""
         ...
 
-    @property
-    def outputs(self) -> tuple[int, ...]:
-        """Rows of each part of the answer."""
-        ...
-
     def answer(self, omega: ComplexArray, given: ComplexArray, truncation: Truncation) -> Answer:
         """Answer some frequencies; a part may end where the guideway begins to count as rigid."""
-        ...
-
-    def gathered(self, parts: Iterable[ComplexArray]) -> Answer:
-        """Make an answer of its parts."""
         ...
 
 
@@ -86,31 +76,35 @@ def solve(
     -----
     Cases do not see each other: two at once are the same as one after the other.
     """
-    cases, entries = given.shape[:-2], system.entries
-    parts = [np.zeros((*cases, rows, omega.size), complex) for rows in system.outputs]
-    ends = [0] * len(parts)
-    step = BATCH.frequencies(entries * max(math.prod(cases), 1))
-    with unthreaded(entries):
-        for first in range(0, omega.size, step):
-            some = slice(first, first + step)
-            answers = system.answer(omega[some], given[..., some], truncation)
-            for number, (whole, part) in enumerate(zip(parts, answers, strict=True)):
-                if part.shape[-1]:
-                    ends[number] = first + part.shape[-1]
-                    whole[..., first : ends[number]] = part
-            progress("solving", min(first + step, omega.size) / omega.size)
-    kept = [part[..., :end] for part, end in zip(parts, ends, strict=True)]
+    progress("solving", 0.0)
+    rows = math.prod(given.shape[:-1])
+    step = BATCH.frequencies(max(system.entries, rows))
+    with unthreaded(system.entries):
+        answer = system.answer(omega[:step], given[..., :step], truncation)
+        if omega.size > step:
+            parts = [np.zeros((*part.shape[:-1], omega.size), complex) for part in answer]
+            ends = [0] * len(parts)
+            for first in range(0, omega.size, step):
+                if first:
+                    some = slice(first, first + step)
+                    answer = system.answer(omega[some], given[..., some], truncation)
+                for number, (whole, part) in enumerate(zip(parts, answer, strict=True)):
+                    if part.shape[-1]:
+                        ends[number] = first + part.shape[-1]
+                        whole[..., first : ends[number]] = part
+                progress("solving", min(first + step, omega.size) / omega.size)
+            answer = type(answer)(*(part[..., :end] for part, end in zip(parts, ends, strict=True)))
     # A sum is finite only if all of its terms are.
-    if not all(np.isfinite(part.sum()) for part in kept):
-        _refuse(system, omega, kept)
-    return system.gathered(kept)
+    if not all(np.isfinite(part.sum()) for part in answer):
+        _refuse(system, omega, answer)
+    return answer
 
 
-def _refuse(system: Solvable[Answer], omega: ComplexArray, parts: list[ComplexArray]) -> None:
+def _refuse(system: Solvable[Answer], omega: ComplexArray, parts: tuple[ComplexArray, ...]) -> None:
     """Say at which frequency there is no answer."""
     bad = np.zeros(omega.size, bool)
     for part in parts:
-        bad[: part.shape[-1]] |= ~np.isfinite(part.reshape(-1, part.shape[-1])).all(axis=0)
+        bad[: part.shape[-1]] |= ~np.isfinite(part).all(axis=tuple(range(part.ndim - 1)))
     at = f"{omega[bad][0].real / (2 * np.pi):.6g} Hz and " if bad.any() else ""
     raise SolveError(
         f"{system.words} no finite response at {at}{system.speed:g} m/s: a vibration without damping is driven at "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -113,7 +114,13 @@ def _around(pole: complex) -> FloatArray:
     return around
 
 
-def growing_vibrations(system: System, along_axis: Tables) -> int:
+def stretches(path: ComplexArray, most: int) -> list[ComplexArray]:
+    """Cut a path of ends and middles in turn into stretches that join, of at most so many points, three or more."""
+    steps = 2 * max((most - 1) // 2, 1)
+    return [path[first : first + steps + 1] for first in range(0, path.size - 1, steps)]
+
+
+def growing_vibrations(system: System, along_axis: Iterable[Tables]) -> int:
     """Count the vibrations of the coupled system that grow in time, conjugate pairs counted twice.
 
     Every zero of det(I + D G) with Im ω < 0 turns the phase of the determinant by one full circle along the
@@ -123,14 +130,20 @@ def growing_vibrations(system: System, along_axis: Tables) -> int:
     ----------
     system : System
         Vehicle and road.
-    along_axis : Tables
-        Both sides at the frequencies of `along_the_axis`.
+    along_axis : iterable of Tables
+        Both sides at the frequencies of `along_the_axis`, stretch by stretch.
 
     Returns
     -------
     int
         Zero for a stable system.
     """
+    turned = sum(_turned(system, stretch) for stretch in along_axis)
+    return max(round(-turned / np.pi), 0)
+
+
+def _turned(system: System, along_axis: Tables) -> float:
+    """Angle by which the determinant turns along a stretch of the path [rad]."""
     path, matrices = along_axis.omega, _stacked(along_axis)
     first, middle, last = path[:-1:2], path[1::2], path[2::2]
     at_first, at_middle, at_last = matrices[:-1:2], matrices[1::2], matrices[2::2]
@@ -146,7 +159,7 @@ def growing_vibrations(system: System, along_axis: Tables) -> int:
         middle = 0.5 * (first + last)
         at_middle = _stacked(system.at(middle))
     turned += np.angle(_factors(at_first, at_last)).sum()
-    return max(round(-float(turned) / np.pi), 0)
+    return float(turned)
 
 
 def _stacked(tables: Tables) -> ComplexArray:
@@ -172,15 +185,15 @@ def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
     return np.linalg.eigvals(np.linalg.solve(before, after)).astype(complex)
 
 
-def require_stable(system: System, along_axis: Tables) -> None:
+def require_stable(system: System, along_axis: Iterable[Tables]) -> None:
     """Refuse a system that rings itself up: it has no steady state to vibrate about.
 
     Parameters
     ----------
     system : System
         Vehicle and road.
-    along_axis : Tables
-        Both sides at the frequencies of `along_the_axis`.
+    along_axis : iterable of Tables
+        Both sides at the frequencies of `along_the_axis`, stretch by stretch.
 
     Raises
     ------

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
-from movingfrf.response.batches import applied, solved, unthreaded
+from movingfrf.response.batches import BATCH, applied, unthreaded
 from movingfrf.response.line import Line
-from movingfrf.response.stability import along_the_axis, require_stable
+from movingfrf.response.stability import along_the_axis, require_stable, stretches
 from movingfrf.response.system import System, Tables
 from movingfrf.response.truncation import EVERYWHERE, TRUNCATION, Truncation
 
@@ -54,25 +56,23 @@ class Survey:
     findings: tuple[find.Finding, ...]
 
 
-def survey(
-    system: System,
-    line: Line | None = None,
-    roughness: ComplexArray | None = None,
-    truncation: float | None = None,
-) -> Survey:
+class Excited(NamedTuple):
+    """What a record excites a system by, and what is said of its truncation."""
+
+    line: Line
+    roughness: ComplexArray  # (*case, contact, frequency) spectra of the elevation under the contacts [m s]
+    truncation: float | None  # [Hz]; None: the lowest one that changes no output by more than 1e-6, relative L2
+
+
+def survey(system: System, excited: Excited | None = None) -> Survey:
     """Look at a system before it is solved.
 
     Parameters
     ----------
     system : System
         Vehicle and road.
-    line : Line, optional
-        The line of frequencies along which a record is to be solved; without one nothing is truncated.
-    roughness : ndarray, shape (*case, contact, frequency), optional
-        Spectra of the elevation under the contacts along that line [m s].
-    truncation : float, optional
-        Frequency beyond which the road is to count as rigid [Hz]; None: the lowest one that changes no output by
-        more than 1e-6, relative L2.
+    excited : Excited, optional
+        The record that is to be solved; without one nothing is truncated.
 
     Returns
     -------
@@ -84,37 +84,33 @@ def survey(
     SolveError
         If vehicle and guideway are unstable together.
     """
-    with unthreaded(system.entries):
-        return _surveyed(system, line, roughness, truncation)
-
-
-def _surveyed(
-    system: System, line: Line | None, roughness: ComplexArray | None, truncation: float | None
-) -> Survey:
-    at_rest, axis = np.zeros(1, complex), along_the_axis(system.vehicle, system.speed)
     critical_speed = float(system.guideway.critical_speed)
     findings = find.near_critical(system.speed, critical_speed)
-    if line is None or roughness is None:
-        resting, along_axis = system.at_each(at_rest, axis)
-        chosen = EVERYWHERE
-        require_stable(system, along_axis)
-    else:
-        asked = EVERYWHERE if truncation is None else Truncation(frequency=truncation)
-        starts = bands(line, asked)
-        resting, along_axis, in_bands = system.at_each(at_rest, axis, middles(starts, line))
-        require_stable(system, along_axis)
-        influence = guideway_influence(system, starts, in_bands, roughness)
-        if truncation is None:
-            kept = first_negligible(influence, roughness)
-            asked = Truncation(frequency=max(kept - 1, 0) / line.period)
-        chosen = Truncation(frequency=asked.frequency, error=influence.error(asked.untouched(line.omega())))
-        findings = [*findings, *find.beyond_truncation(chosen.frequency, chosen.error)]
-    return Survey(
-        steady=steady_state(system, resting),
-        critical_speed=critical_speed,
-        truncation=chosen,
-        findings=tuple(findings),
-    )
+    batch = BATCH.frequencies(system.entries)
+    path = stretches(along_the_axis(system.vehicle, system.speed), batch)
+    starts = np.zeros(0, int) if excited is None else bands(excited)
+    among = np.zeros(0, complex) if excited is None else middles(starts, excited.line)
+    pieces = [among[first : first + batch] for first in range(0, among.size, batch)]
+    with unthreaded(system.entries):
+        tables = system.at_each([np.zeros(1, complex), *path, *pieces])
+        steady = steady_state(system, next(tables))
+        require_stable(system, islice(tables, len(path)))
+        truncation = EVERYWHERE
+        if excited is not None:
+            truncation = _truncation(guideway_influence(system, starts, tables, excited.roughness), excited)
+            findings = [*findings, *find.beyond_truncation(truncation.frequency, truncation.error)]
+    return Survey(steady=steady, critical_speed=critical_speed, truncation=truncation, findings=tuple(findings))
+
+
+def _truncation(influence: Influence, excited: Excited) -> Truncation:
+    """Take the truncation that is stated, or find one; and what it changes."""
+    line, frequency = excited.line, excited.truncation
+    if frequency is None:
+        kept = first_negligible(influence, excited.roughness)
+        # Where the response to rest alone is kept, some frequency below the next.
+        frequency = max(kept - 1, 0.5 * (kept > 0)) / line.period
+    untouched = Truncation(frequency=frequency).untouched(line.omega())
+    return Truncation(frequency=frequency, error=influence.error(untouched))
 
 
 def steady_state(system: System, at_rest: Tables) -> SteadyState:
@@ -133,7 +129,7 @@ def steady_state(system: System, at_rest: Tables) -> SteadyState:
         Loads and deflections. With more contacts than rigid motions the sag of the road redistributes the
         weight: (I + D G) F₀ = F_s at ω = 0.
     """
-    load = solved(at_rest.matrices, system.vehicle.static_loads[:, None] + 0j)[:, 0].real
+    load = at_rest.shared(system.vehicle.static_loads[:, None] + 0j)[:, 0].real
     return SteadyState(load=load, deflection=at_rest.frf[..., 0].real @ load)
 
 
@@ -154,10 +150,12 @@ class Influence(NamedTuple):
         return float(np.sqrt(_relative(beyond, self.total).max(initial=0.0)))
 
 
-def bands(line: Line, truncation: Truncation) -> IntArray:
-    """Give the number of the first frequency of each band; one band begins beyond the truncation."""
+def bands(excited: Excited) -> IntArray:
+    """Give the number of the first frequency of each band; one band begins beyond a stated truncation."""
+    line, stated = excited.line, excited.truncation
     edges = np.geomspace(1, line.size, TRUNCATION.bands + 1).astype(int)
-    beyond = min(truncation.untouched(line.omega()), line.size - 1)
+    cut = EVERYWHERE if stated is None else Truncation(frequency=stated)
+    beyond = min(cut.untouched(line.omega()), line.size - 1)
     starts = np.unique(np.r_[0, edges, beyond])
     return starts[starts < line.size]
 
@@ -167,7 +165,9 @@ def middles(starts: IntArray, line: Line) -> ComplexArray:
     return line.omega((starts + np.r_[starts[1:], line.size] - 1) // 2)
 
 
-def guideway_influence(system: System, starts: IntArray, tables: Tables, roughness: ComplexArray) -> Influence:
+def guideway_influence(
+    system: System, starts: IntArray, tables: Iterable[Tables], roughness: ComplexArray
+) -> Influence:
     """Estimate the guideway's part in every output from the system at the middle of each band.
 
     A rigid road changes the displacement under the contacts by −W, hence the force by D W and the motion by
@@ -179,8 +179,8 @@ def guideway_influence(system: System, starts: IntArray, tables: Tables, roughne
         Vehicle and road.
     starts : ndarray, shape (band,)
         What `bands` returned.
-    tables : Tables
-        Both sides at the `middles` of the bands.
+    tables : iterable of Tables
+        Both sides at the `middles` of the bands, piece by piece.
     roughness : ndarray, shape (*case, contact, frequency)
         Spectra of the elevation under the contacts [m s].
 
@@ -189,20 +189,31 @@ def guideway_influence(system: System, starts: IntArray, tables: Tables, roughne
     Influence
         Per band and output.
     """
+    cases = roughness.reshape(-1, *roughness.shape[-2:])
+    power = np.add.reduceat(cases.real**2 + cases.imag**2, starts, axis=2)
+    changes, energies, total, band = [], [], 0.0, 0
+    for piece in tables:
+        change, whole = _per_roughness(system, piece)
+        here = power[..., band : band + piece.omega.size]
+        changes.append(change)
+        energies.append(np.einsum("cob,ncb->nob", change, np.sqrt(here)) ** 2)
+        total = total + np.einsum("cob,ncb->no", whole**2, here)
+        band += piece.omega.size
+    return Influence(starts, np.concatenate(changes, axis=2), np.concatenate(energies, axis=2), np.asarray(total))
+
+
+def _per_roughness(system: System, tables: Tables) -> tuple[FloatArray, FloatArray]:
+    """Magnitudes per roughness of what the guideway adds and of the whole, (source contact, output, frequency)."""
     omega = tables.omega
     # One case per contact under which the road is rough.
-    unit, force = tables.unit, tables.per_roughness.swapaxes(0, 1)
+    unit, force = tables.unit, tables.forces(tables.unit)
     deflection = applied(tables.frf, force)
     moved, pushed = system.dynamics.response(omega, deflection)
     motion = moved - system.dynamics.response(omega, unit)[0]
     squared = np.abs(omega) ** 2
-    change = np.abs(np.concatenate([pushed, deflection, moved, squared * moved], axis=1))
-    whole = np.abs(np.concatenate([force, deflection, motion, squared * motion], axis=1))
-    cases = roughness.reshape(-1, *roughness.shape[-2:])
-    power = np.add.reduceat(cases.real**2 + cases.imag**2, starts, axis=2)
-    energy = np.einsum("cob,ncb->nob", change, np.sqrt(power)) ** 2
-    total = np.einsum("cob,ncb->no", whole**2, power)
-    return Influence(starts, change, energy, total)
+    change = np.concatenate([pushed, deflection, moved, squared * moved], axis=1)
+    whole = np.concatenate([force, deflection, motion, squared * motion], axis=1)
+    return np.abs(change), np.abs(whole)
 
 
 def first_negligible(found: Influence, roughness: ComplexArray) -> int:

@@ -7,7 +7,7 @@ frequency, at the ports where the two meet. Axes are (*case, port, frequency).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -16,7 +16,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf.guideways.guideway import Guideway
-from movingfrf.response.batches import applied, multiplied, solved
+from movingfrf.response.batches import BATCH, applied, multiplied, solved
 from movingfrf.response.line import Histories, Line
 from movingfrf.response.truncation import Truncation
 from movingfrf.vehicles.dynamics import Dynamics
@@ -41,10 +41,6 @@ class Tables:
     frf: ComplexArray
     stiffness: ComplexArray
 
-    def admitted(self, truncation: Truncation) -> Tables:
-        """Let the guideway stiffen beyond a truncation: a taper on G and nothing else."""
-        return replace(self, frf=self.frf * truncation.taper(self.omega))
-
     @property
     def matrices(self) -> ComplexArray:
         """I + D G, shape (port, port, frequency): singular at the poles of the coupled system."""
@@ -53,20 +49,19 @@ class Tables:
             matrices[port, port] += 1.0
         return matrices
 
+    def shared(self, loads: ComplexArray) -> ComplexArray:
+        """Apply (I + D G)⁻¹ to loads [N], (*case, port, frequency): what the sag of the guideway leaves of them."""
+        return solved(self.matrices, loads)
+
     def forces(self, roughness: ComplexArray) -> ComplexArray:
         """Contact forces F = (I + D G)⁻¹ D R [N], both (*case, port, frequency)."""
-        return solved(self.matrices, applied(self.stiffness, roughness))
+        return self.shared(applied(self.stiffness, roughness))
 
     @property
     def unit(self) -> ComplexArray:
         """One case per port: a roughness of 1 m under that port alone, shape (port, port, frequency)."""
         ports = len(self.stiffness)
         return np.broadcast_to(np.eye(ports, dtype=complex)[:, :, None], (ports, ports, self.omega.size))
-
-    @property
-    def per_roughness(self) -> ComplexArray:
-        """S = (I + D G)⁻¹ D: contact force per roughness [N/m], shape (port, port, frequency)."""
-        return self.forces(self.unit).swapaxes(0, 1)
 
 
 class Response(NamedTuple):
@@ -98,7 +93,7 @@ class CoupledHistories(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class System:
-    """A guideway and a vehicle that travels on it; made by `joined`.
+    """A guideway and a vehicle that travels on it.
 
     Parameters
     ----------
@@ -108,14 +103,16 @@ class System:
         The vehicle.
     speed : float
         Speed [m/s].
-    dynamics : Dynamics
-        What `vehicle.dynamics()` returns.
     """
 
     guideway: Guideway
     vehicle: Vehicle
     speed: float
-    dynamics: Dynamics
+
+    @property
+    def dynamics(self) -> Dynamics:
+        """The vehicle at its contacts."""
+        return self.vehicle.dynamics()
 
     @property
     def words(self) -> str:
@@ -127,28 +124,23 @@ class System:
         """Entries of a matrix at one frequency."""
         return self.dynamics.contacts**2
 
-    @property
-    def outputs(self) -> tuple[int, ...]:
-        """Rows of each part of a `Response`."""
-        return self.dynamics.contacts, self.dynamics.contacts, self.dynamics.dofs
-
-    def gathered(self, parts: Iterable[ComplexArray]) -> Response:
-        """Make a response of its parts."""
-        return Response(*parts)
-
     def at(self, omega: ComplexArray) -> Tables:
         """Evaluate both sides at some frequencies [rad/s]."""
         frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
         return Tables(omega, np.moveaxis(frf, 0, -1), self.dynamics.stiffness(omega))
 
-    def at_each(self, *omegas: ComplexArray) -> list[Tables]:
-        """Evaluate both sides at several sets of frequencies [rad/s] in one go."""
-        whole = self.at(np.concatenate(omegas))
-        ends = np.cumsum([0, *(omega.size for omega in omegas)]).tolist()
-        return [
-            Tables(*(part[..., first:last] for part in (whole.omega, whole.frf, whole.stiffness)))
-            for first, last in pairwise(ends)
-        ]
+    def at_each(self, omegas: Sequence[ComplexArray]) -> Iterator[Tables]:
+        """Evaluate both sides at sets of frequencies [rad/s], as many sets in one go as a batch holds."""
+        most, waiting = BATCH.frequencies(self.entries), list(omegas)
+        while waiting:
+            count = 1
+            while count < len(waiting) and sum(omega.size for omega in waiting[: count + 1]) <= most:
+                count += 1
+            together, waiting = waiting[:count], waiting[count:]
+            whole = self.at(np.concatenate(together))
+            ends = np.cumsum([0, *(omega.size for omega in together)]).tolist()
+            for first, last in pairwise(ends):
+                yield Tables(*(part[..., first:last] for part in (whole.omega, whole.frf, whole.stiffness)))
 
     def answer(self, omega: ComplexArray, roughness: ComplexArray, truncation: Truncation) -> Response:
         """Solve for the response to roughness [m], shape (*case, contact, frequency), at ascending frequencies.
@@ -158,10 +150,11 @@ class System:
         """
         reach = truncation.reach(omega)
         displacement = -roughness
-        tables = self.at(omega[:reach]).admitted(truncation) if reach else None
-        if tables is None:
+        if not reach:
             motion, force = self.dynamics.response(omega, displacement)
             return Response(force, roughness[..., :0], motion)
+        tables = self.at(omega[:reach])
+        tables = replace(tables, frf=truncation.admitted(tables.frf, tables.omega))
         solved_force = tables.forces(roughness[..., :reach])
         deflection = applied(tables.frf, solved_force)
         displacement[..., :reach] += deflection
@@ -206,15 +199,6 @@ class Prescribed:
         """Entries of a matrix at one frequency."""
         return self.loads.size * self.points.size
 
-    @property
-    def outputs(self) -> tuple[int, ...]:
-        """Rows of each part of a `Yielding`."""
-        return (self.points.size,)
-
-    def gathered(self, parts: Iterable[ComplexArray]) -> Yielding:
-        """Make an answer of its parts."""
-        return Yielding(*parts)
-
     def answer(self, omega: ComplexArray, force: ComplexArray, truncation: Truncation) -> Yielding:
         """Deflection G F [m] under forces [N], shape (*case, load, frequency), at ascending frequencies."""
         reach = truncation.reach(omega)
@@ -222,24 +206,4 @@ class Prescribed:
             return Yielding(np.zeros((*force.shape[:-2], self.points.size, 0), complex))
         omega = omega[:reach]
         frf = self.guideway.moving_frf(self.points[:, None] - self.loads, self.speed, omega)
-        return Yielding(applied(np.moveaxis(frf, 0, -1) * truncation.taper(omega), force[..., :reach]))
-
-
-def joined(guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
-    """Put a vehicle on a guideway.
-
-    Parameters
-    ----------
-    guideway : Guideway
-        The road.
-    vehicle : Vehicle
-        The vehicle.
-    speed : float
-        Speed [m/s].
-
-    Returns
-    -------
-    System
-        The two together.
-    """
-    return System(guideway=guideway, vehicle=vehicle, speed=speed, dynamics=vehicle.dynamics())
+        return Yielding(applied(truncation.admitted(np.moveaxis(frf, 0, -1), omega), force[..., :reach]))

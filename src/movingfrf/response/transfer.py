@@ -12,7 +12,7 @@ from movingfrf._basics.checks import checking
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.solve import solve
 from movingfrf.response.survey import survey
-from movingfrf.response.system import joined
+from movingfrf.response.system import System
 from movingfrf.results.labels import attributes, labelled, turned
 from movingfrf.roughness.excitation import Touch
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
@@ -80,7 +80,7 @@ def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: A
     require_memory(
         BYTES_PER_VALUE * lines.size * contacts * (contacts + dofs), f"a transfer over {lines.size} frequencies"
     )
-    system = joined(guideway, vehicle, speed)
+    system = System(guideway=guideway, vehicle=vehicle, speed=speed)
     surveyed = survey(system)
     omega = 2 * np.pi * lines
     # One case per contact under which the road is rough.

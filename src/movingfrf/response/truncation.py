@@ -38,7 +38,7 @@ class Truncation:
     ----------
     frequency : float
         Up to here the guideway is what it is; over the next 5 % it stiffens, beyond it is rigid [Hz]. inf: it is
-        what it is everywhere.
+        what it is everywhere; 0: it is rigid.
     error : float
         Greatest relative change of any output that this makes.
     """
@@ -48,10 +48,14 @@ class Truncation:
 
     def taper(self, omega: ComplexArray) -> FloatArray:
         """Share of its compliance that the guideway has at some frequencies [rad/s]: 1, then less, then 0."""
+        if self.frequency in (0.0, np.inf):
+            return np.full(omega.size, 1.0 if self.frequency else 0.0)
         frequency, width = omega.real / (2 * np.pi), TRUNCATION.stiffening
-        if not 0 < self.frequency < np.inf:
-            return np.where(frequency <= self.frequency, 1.0, 0.0)
         return smooth_step((1.0 + width - frequency / self.frequency) / width)
+
+    def admitted(self, frf: ComplexArray, omega: ComplexArray) -> ComplexArray:
+        """Let a guideway stiffen: moving FRFs, shape (…, frequency), times the taper."""
+        return frf * self.taper(omega)
 
     def untouched(self, omega: ComplexArray) -> int:
         """Count the frequencies [rad/s] up to the truncation; ascending, unless all count."""
@@ -62,8 +66,8 @@ class Truncation:
         return self._below(omega, 1.0 + TRUNCATION.stiffening)
 
     def _below(self, omega: ComplexArray, share: float) -> int:
-        if np.isinf(self.frequency):
-            return omega.size
+        if self.frequency in (0.0, np.inf):
+            return omega.size if self.frequency else 0
         limit = 2 * np.pi * share * self.frequency * (1.0 + TRUNCATION.rounding)
         return int(np.searchsorted(omega.real, limit, side="right"))
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from movingfrf._basics.arrays import finite
-from movingfrf.results.labels import SCHEMAS, Measure, flaws, kind_of
+from movingfrf.results.labels import HISTORIES, SCHEMAS, Measure, flaws, kind_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -123,6 +123,8 @@ def load(file: Path) -> xr.Dataset:
         )
     if "movingfrf" not in result.attrs or kind is None:
         raise ValueError(f"{file}: is no result of movingfrf")
+    if kind not in HISTORIES:
+        raise ValueError(f"{file}: holds no histories, as `movingfrf run` writes them, but a result of kind {kind}")
     schema = SCHEMAS[kind]
     lacking = [name for name in ("speed", "time_step", "findings") if name not in result.attrs]
     found = [f"lacks the attribute {name}" for name in lacking]

@@ -139,6 +139,9 @@ SCHEMAS: dict[str, dict[str, Label]] = {
     "accelerance": _per_force("accelerance", "m/s2/N"),
 }
 
+# Kinds that are histories.
+HISTORIES = ("coupled", "loaded")
+
 
 def attributes(
     kind: str, title: str, *, findings: Iterable[Finding] = (), **settings: str | float
@@ -167,7 +170,9 @@ def attributes(
         Of every finding.
     """
     plain_settings = {
-        name: value if isinstance(value, str | int) else float(value) for name, value in settings.items()
+        # A truth value is a number: netCDF knows no other.
+        name: value if isinstance(value, str) else int(value) if isinstance(value, int) else float(value)
+        for name, value in settings.items()
     }
     return {
         "title": title,

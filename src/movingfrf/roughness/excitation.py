@@ -8,10 +8,9 @@ wave e^{iκx} the average leaves the share `enveloping`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,6 +21,9 @@ from movingfrf.roughness.profile import SLACK, Profile
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
+
+# Samples that are averaged about one level: on the way of so many a road does not climb far [256 to 16 384].
+TOGETHER = 4096
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -55,25 +57,14 @@ class Touch:
         return self.shares(wavenumber) * np.exp(1j * np.outer(self.positions, wavenumber))
 
 
-@dataclass(frozen=True, eq=False)
-class _Along:
+class Along(NamedTuple):
     """One path about its datum, going straight on beyond both ends."""
 
     datum: float
     level: PPoly
 
-    @cached_property
-    def slope(self) -> PPoly:
-        """Slope of the level."""
-        return self.level.derivative()
-
-    @cached_property
-    def area(self) -> PPoly:
-        """Area under the level; of long profiles it takes memory, so that only footprints ask for it."""
-        return self.level.antiderivative()
-
     @classmethod
-    def of(cls, profile: Profile, path: int, datum_at: float) -> _Along:
+    def of(cls, profile: Profile, path: int, datum_at: float) -> Along:
         """Prepare one path of a profile."""
         from scipy.interpolate import PPoly
 
@@ -85,16 +76,42 @@ class _Along:
         pieces[:, 1:-1] = spline.c
         pieces[3, 1:-1] -= datum
         pieces[2:, 0], pieces[2:, -1] = (falling, low - falling), (rising, high)
-        level = PPoly.construct_fast(pieces, np.r_[ends[0] - 1.0, spline.x, ends[1] + 1.0])
-        return cls(datum, level)
+        return cls(datum, PPoly.construct_fast(pieces, np.r_[ends[0] - 1.0, spline.x, ends[1] + 1.0]))
 
-    def seen(self, distance: FloatArray, footprint: float, cams: float) -> FloatArray:
-        """Average elevation about the datum [m]."""
-        return _averaged(self.level, lambda: self.area, distance, footprint, cams)
+    def seen(self, distance: FloatArray, footprint: float, cams: float, derivative: int = 0) -> FloatArray:
+        """Average elevation about the datum [m], or slope [m/m], at ascending distances [m]."""
+        if not footprint and not cams:
+            found: FloatArray = self.level(distance, derivative)
+            return found
+        found = np.empty_like(distance)
+        for first in range(0, distance.size, TOGETHER):
+            some = slice(first, first + TOGETHER)
+            found[some] = self._averaged(distance[some], footprint, cams, derivative)
+        return found
 
-    def rising(self, distance: FloatArray, footprint: float, cams: float) -> FloatArray:
-        """Average slope [m/m]."""
-        return _averaged(self.slope, lambda: self.level, distance, footprint, cams)
+    def _averaged(self, distance: FloatArray, footprint: float, cams: float, derivative: int) -> FloatArray:
+        """Average a stretch of it, counted from where that begins and about the level there.
+
+        The area under a road grows with the road's length and climb, and a difference of two such areas would have
+        lost the digits that roughness needs.
+        """
+        from scipy.interpolate import PPoly
+
+        places, begun, reach = self.level.x, distance[0], 0.5 * (footprint + cams)
+        first = max(int(np.searchsorted(places, begun - reach)) - 1, 0)
+        last = max(int(np.searchsorted(places, distance[-1] + reach)), first + 1)
+        pieces, height = self.level.c[:, first:last].copy(), self.level(begun)
+        pieces[3] -= height
+        here = PPoly.construct_fast(pieces, places[first : last + 1] - begun)
+        # Where it rises, the level is the integral of the slope.
+        integral = here if derivative else here.antiderivative()
+        at = (distance - begun) + 0.5 * cams * np.array([[-1.0], [1.0]] if cams else [[0.0]])
+        half = 0.5 * footprint
+        if footprint:
+            found: FloatArray = ((integral(at + half) - integral(at - half)) / footprint).mean(axis=0)
+        else:
+            found = here(at, derivative).mean(axis=0)
+        return found if derivative else found + height
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -105,7 +122,7 @@ class Excitation:
     ----------
     touch : Touch
         The contacts.
-    along : dict of int to _Along
+    along : dict of int to Along
         The paths they follow.
     start : float
         Distance of the reference point before it has travelled [m].
@@ -114,7 +131,7 @@ class Excitation:
     """
 
     touch: Touch
-    along: dict[int, _Along]
+    along: dict[int, Along]
     start: float
     blend: float
 
@@ -146,7 +163,7 @@ class Excitation:
         """Rate of change of the elevation that each contact sees, as for `elevation` [m/s]."""
         rate = np.empty((self.touch.positions.size, travelled.size))
         for row, along, distance, touched, setting_in in self._each(travelled):
-            rising = along.rising(distance, *touched)
+            rising = along.seen(distance, *touched, derivative=1)
             blending = setting_in.size
             rising[:blending] *= smooth_step(setting_in)
             if blending:
@@ -157,7 +174,7 @@ class Excitation:
 
     def _each(
         self, travelled: FloatArray
-    ) -> Iterator[tuple[int, _Along, FloatArray, tuple[float, float], FloatArray]]:
+    ) -> Iterator[tuple[int, Along, FloatArray, tuple[float, float], FloatArray]]:
         """Go through the contacts: path, distances, what is touched, how far the profile has set in at first."""
         touch = self.touch
         foremost = self.start + touch.positions.max()
@@ -201,24 +218,9 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
     require_cover(profile, start + touch.positions.min(), foremost + distance, touch.paths)
     # A profile without columns is the same for all paths.
     column = {path: 0 if profile.same_across else path for path in touch.paths}
-    known = {path: _Along.of(profile, path, foremost) for path in set(column.values())}
+    known = {path: Along.of(profile, path, foremost) for path in set(column.values())}
     along = {path: known[column[path]] for path in column}
     return Excitation(touch=touch, along=along, start=start, blend=blend)
-
-
-def _averaged(
-    of: PPoly, integral: Callable[[], PPoly], distance: FloatArray, footprint: float, cams: float
-) -> FloatArray:
-    """Mean of a function over a footprint, at both cams."""
-    if cams:
-        apart = (distance - 0.5 * cams, distance + 0.5 * cams)
-        behind, ahead = (_averaged(of, integral, at, footprint, 0.0) for at in apart)
-        return 0.5 * (behind + ahead)
-    if not footprint:
-        found: FloatArray = of(distance)
-        return found
-    area, half = integral(), 0.5 * footprint
-    return (area(distance + half) - area(distance - half)) / footprint
 
 
 def require_cover(profile: Profile, first: float, last: float, paths: Sequence[int]) -> None:

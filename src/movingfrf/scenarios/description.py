@@ -14,7 +14,7 @@ from movingfrf._basics.welch import welch
 from movingfrf.response.line import TRANSFORM, Line
 from movingfrf.response.simulation import line_of
 from movingfrf.response.survey import survey
-from movingfrf.response.system import joined
+from movingfrf.response.system import System
 from movingfrf.response.truncation import EVERYWHERE, Truncation
 from movingfrf.results.findings import near_critical
 from movingfrf.roughness.fitting import fit_iso
@@ -81,7 +81,7 @@ def described(scenario: Scenario) -> Description:
             contacts: Section = ("Contacts at rest", _contacts(vehicle, vehicle.static_loads))
             if endless is not None:
                 try:
-                    surveyed = survey(joined(endless, vehicle, speed))
+                    surveyed = survey(System(guideway=endless, vehicle=vehicle, speed=speed))
                 except SolveError as error:
                     refusal = str(error)
                 else:

@@ -73,11 +73,6 @@ class Contact:
         """Whether the contact follows the guideway rigidly."""
         return self.stiffness == np.inf
 
-    @property
-    def envelops(self) -> bool:
-        """Whether the contact sees the profile at more than one point."""
-        return bool(self.footprint or self.cams)
-
     def enveloping(self, wavenumber: NumberArray) -> NumberArray:
         """Share of a wave of the profile that the contact follows.
 

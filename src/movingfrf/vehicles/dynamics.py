@@ -185,11 +185,11 @@ class Part:
         if not len(self.own.constant):
             return np.zeros((*displacement.shape[:-2], 0, omega.size), complex)
         if self.modes is None:
-            pushed = np.moveaxis(self.entry.times(omega, displacement), -1, 0)
-            # Frequency first, and columns, is what LAPACK takes.
-            own = np.moveaxis(self.own.at(omega), -1, 0)
-            own = own.reshape(omega.size, *(1,) * (pushed.ndim - 2), *own.shape[1:])
-            return np.moveaxis(np.linalg.solve(own, pushed[..., None])[..., 0], 0, -1)
+            pushed = self.entry.times(omega, displacement)
+            # Frequency first, and a column for each case, is what LAPACK takes.
+            columns = np.moveaxis(pushed.reshape(-1, *pushed.shape[-2:]), (2, 1), (0, 1))
+            free = np.linalg.solve(np.moveaxis(self.own.at(omega), -1, 0), columns)
+            return np.moveaxis(free, (0, 1), (2, 1)).reshape(pushed.shape)
         poles, shapes, weights = self.modes
         entered = (weights @ part @ displacement if part.any() else None for part in self.entry)
         modal = _horner(1j * omega, list(entered), (*displacement.shape[:-2], len(poles), omega.size))
