@@ -10,7 +10,7 @@ from tests.faults.fault import SOURCE
 # text for another reason: ratios of matrices for their eigenvalues, the paper's own JSON, compiled loops.
 ONE_OF_EACH = {
     "inverse of the coupled system": (r"np\.linalg\.(solve|inv)\(", "response", {"batches.py", "stability.py"}),
-    "loop over chunks of frequencies": (r"BATCH\.frequencies\(", "response", {"solve.py"}),
+    "loop over chunks of frequencies": (r"range\(0, omega\.size", "response", {"solve.py"}),
     "threads of many small matrices": (r"threadpoolctl", "response", {"batches.py"}),
     "what a contact sees of a road": (r"\bsmooth_step_slope\(", "", {"smooth.py", "excitation.py"}),
     "share of a wave that a contact follows": (r"np\.sin\(half\)", "", {"enveloping.py"}),

@@ -231,8 +231,4 @@ def aligned(result: xr.Dataset, case: Case, reference: Reference) -> tuple[Quant
     mine, its = (1, round(ratio)) if ratio >= 1 else (round(1 / ratio), 1)
     pairs = {name: (found[name][::mine], reference.quantities[name][::its]) for name in found}
     count = min(len(values) for pair in pairs.values() for values in pair)
-    if isinstance(case.scenario.case, Drive):
-        # At the end of the journey a footprint reaches over road that nobody knows.
-        ahead = max(contact.footprint for contact in case.scenario.case.vehicle.contacts) / (2 * case.journey.speed)
-        count -= math.ceil(ahead / max(case.time_step, reference.time_step))
     return {name: a[:count] for name, (a, _) in pairs.items()}, {name: b[:count] for name, (_, b) in pairs.items()}
