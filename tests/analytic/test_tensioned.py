@@ -57,6 +57,10 @@ def test_too_much_compression_buckles():
     length = f"{2 * np.pi * (BENDING / STIFFNESS) ** 0.25:.3g}"
     with pytest.raises(ValueError, match=rf"beam must stay straight .* buckles in waves of {length} m"):
         laid(-(1 + 1e-9) * LIMIT)
+    # Far beyond, the softest wave is the one of EI κ⁴ − N κ² + k at its least: κ² = N/2EI.
+    length = f"{2 * np.pi * np.sqrt(2 * BENDING / (9 * LIMIT)):.3g}"
+    with pytest.raises(ValueError, match=rf"buckles in waves of {length} m"):
+        laid(-9 * LIMIT)
 
 
 def test_any_beam_and_any_foundation():

@@ -154,3 +154,16 @@ def test_a_record_is_kept_as_it_was_given():
     assert (road.samples == 1.0).all()
     with pytest.raises(ValueError, match="read-only"):
         road.samples[0] = 0.0
+
+
+def test_what_it_says_of_itself_tells_records_apart():
+    """In the attributes of a result: not a dump that leaves out what differs, and whatever NumPy prints."""
+    record = {"time_step": 1e-3, "offsets": [0.0], "speed": 10.0}
+    response = 1e-6 * np.exp(-0.01 * np.arange(4000.0))[:, None]
+    other = response.copy()
+    other[500] *= 1.5
+    one, same, two = (mf.SampledGuideway(response=part, **record) for part in (response, response.copy(), other))
+    with np.printoptions(precision=2):
+        assert repr(one) == repr(same)
+    assert repr(one) != repr(two)
+    assert "4000 samples of 1 offsets" in repr(one)

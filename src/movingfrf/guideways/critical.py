@@ -38,7 +38,7 @@ class PhaseVelocity(NamedTuple):
 
 
 def buckles_at(lossless: Ratio) -> float:
-    """Wavenumber at which an undamped guideway has no static stiffness.
+    """Wavenumber of the wave by which an undamped guideway buckles most readily.
 
     Parameters
     ----------
@@ -48,11 +48,16 @@ def buckles_at(lossless: Ratio) -> float:
     Returns
     -------
     float
-        The greatest of them [rad/m]; nan if there is none, so that the guideway stands.
+        That of the least static stiffness, where that is not positive [rad/m]; nan if the guideway stands.
     """
-    squares = np.roots(lossless.above[::2, 0][::-1])
+    above, below = (table[::2, 0][::-1] for table in (lossless.above, lossless.below))
+    squares = np.roots(above)
     positive = squares.real[np.isreal(squares) & (squares.real > 0)]
-    return float(np.sqrt(positive.max())) if positive.size else float("nan")
+    if not positive.size:
+        return float("nan")
+    # Between the longest and the shortest wave that meet no stiffness; to the digits of a message.
+    among = np.geomspace(positive.min(), positive.max(), 10_000)
+    return float(np.sqrt(among[(np.polyval(above, among) / np.polyval(below, among)).argmin()]))
 
 
 def first_stationary_velocity(lossless: Ratio) -> PhaseVelocity:

@@ -186,8 +186,8 @@ def require_guideway(guideway: object) -> None:
             f"guideway must have a moving FRF, as a track has, got a {type(guideway).__name__}; a finite road is "
             "for cdfm, sim and newmark_loads, or struck with moving_impulse_response"
         )
-    # Looked up without asking for it, which may take a second.
-    if getattr_static(guideway, "critical_speed", None) is None:
+    # Looked up without asking for it, which may take a second; unless it is handed on.
+    if getattr_static(guideway, "critical_speed", None) is None and not hasattr(guideway, "critical_speed"):
         raise ValueError(
             f"guideway must have a critical_speed [m/s], which may be inf, got a {type(guideway).__name__} without"
         )

@@ -119,9 +119,9 @@ def track(beam: Beam, foundation: Foundation) -> Track:
 
     Parameters
     ----------
-    beam : EulerBernoulliBeam or TimoshenkoBeam
+    beam : EulerBernoulliBeam, TimoshenkoBeam, TensionedBeam or any Beam
         What carries the load along.
-    foundation : Spring, ShearLayer or OnMass
+    foundation : Spring, ShearLayer, RelaxingSpring, OnMass or any Foundation
         What holds the beam up.
 
     Returns
