@@ -62,6 +62,7 @@ REPORTS = [
     "tests/test_random_command.py",
     "tests/test_report.py",
     "tests/test_cli.py",
+    "tests/test_kinds_command.py",
 ]
 # These where it lies in what a user writes.
 SCENARIOS = [
