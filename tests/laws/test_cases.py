@@ -126,9 +126,10 @@ def test_many_contacts_take_little_memory_before_they_are_solved():
 def test_many_loads_take_little_memory():
     """The matrices of a hundred loads and a hundred points are made for few frequencies at a time."""
     places = -0.5 * np.arange(100.0)
-    force = np.repeat(np.sin(0.1 * np.arange(400.0))[:, None], 100, axis=1)
+    force = np.repeat(np.sin(0.1 * np.arange(1000.0))[:, None], 100, axis=1)
     tracemalloc.start()
-    mf.moving_loads(ROAD, force, places, speed=10.0, truncation=100.0)
+    mf.moving_loads(ROAD, force, places, speed=10.0)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert peak < 100e6
+    # All at once they take 600 MB.
+    assert peak < 60e6, peak
