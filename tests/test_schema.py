@@ -13,7 +13,7 @@ import pytest
 import movingfrf as mf
 from movingfrf.commands.main import main
 from movingfrf.scenarios.kinds import DRIVE, TABLES
-from movingfrf.scenarios.reading import parse_scenario
+from movingfrf.scenarios.reading import _Builder, parse_scenario
 from movingfrf.scenarios.schema import schema_as_json
 from movingfrf.scenarios.template import template
 from tests.test_roads import CAR, PARTS, SHAPE_KINDS, SPECTRUM_KINDS
@@ -110,6 +110,51 @@ def test_what_is_wrong_is_refused_by_schema_and_reader(text):
     assert wrong(text)
     with pytest.raises(mf.ScenarioError):
         parse_scenario(text)
+
+
+def other_values(table, new):
+    """Give every value of a table, and every one within it, in turn other values: where it stands, the table."""
+    for place, value in list(table.items() if isinstance(table, dict) else enumerate(table)):
+        within = other_values(value, new) if isinstance(value, (dict, list)) else ()
+        for where, other in [*(((), one) for one in new(value)), *within]:
+            changed = table.copy()
+            changed[place] = other
+            yield (place, *where), changed
+
+
+def faults_of(tables):
+    """Ask the reader what is wrong with tables."""
+    builder = _Builder(ROOT / "examples")
+    builder.scenario(tables, "case", "")
+    return {fault.name: fault.message for fault in builder.faults}
+
+
+def in_other_words(new):
+    """All of `IN_ORDER` that needs no other file, every table once, with one value after another replaced."""
+    tried = []
+    for text in IN_ORDER.values():
+        tables = tomllib.loads(text)
+        if faults_of(tables):
+            continue
+        for where, changed in other_values({key: one for key, one in tables.items() if one not in tried}, new):
+            yield ".".join(map(str, where)), tables | changed
+        tried += tables.values()
+
+
+def test_a_value_of_another_type_is_a_fault_and_never_a_defect():
+    """Also where a shape goes on to calculate with what it has refused."""
+    refused = [
+        faults_of(tables) for _, tables in in_other_words(lambda value: [1.0, "x", True, [], {}, [value] * 2])
+    ]
+    assert len(refused) > 1000
+    assert sum(not faults for faults in refused) < len(refused) / 10
+    bridge = IN_ORDER["bridge.toml"]
+    assert faults_of(tomllib.loads(bridge.replace('ends = "pinned"', "ends = 1.0"))) == {
+        "guideway.ends": "must be a text or [a text, a text], got 1.0"
+    }
+    slabs = tomllib.loads(IN_ORDER["roughness faulted_slabs"])
+    slabs["roughness"]["spacing"] = "5"
+    assert faults_of(slabs) == {"roughness.spacing": "must be a number [m], got '5'"}
 
 
 def test_every_kind_and_key_is_described():

@@ -14,6 +14,12 @@ FAULTS = [
     ),
     # What a table of a scenario can be.
     Fault("key that may be left out", "scenarios/kind.py", "=_without_none(", "=("),
+    Fault(
+        "value of another type a defect",
+        "scenarios/kind.py",
+        '"" if fits(value, self.type) else',
+        '"" if value else',
+    ),
     Fault("keys that all have to be there", "commands/kinds.py", '"" if key.needed else', '"" if 1 else'),
     Fault("unit of the neighbour", "_basics/documented.py", "[{units[place]}", "[{units[0]}"),
     Fault("part of a road for no journey", "scenarios/reading.py", "key.item == family.makes", "False"),

@@ -228,8 +228,12 @@ class _Builder:
                 self.faults.append(Fault(f"{path}:", str(error)))
             return None
         except (TypeError, AttributeError):
-            # A stand-in may be of no use to a function that does not check first; its own errors are defects.
-            if not broken:
+            # A stand-in, or a value of another type, is of no use to a function that goes on before it refuses;
+            # its other errors are defects.
+            said = [key for key in kind.keys if key.name in table.keys() - broken]
+            refusals = {key.name: key.refusal(table[key.name]) for key in said}
+            self.faults += [Fault(f"{path}.{name}", message) for name, message in refusals.items() if message]
+            if not broken and not any(refusals.values()):
                 raise
             return None
         return None if broken else made
