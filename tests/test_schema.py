@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import tomllib
 from pathlib import Path
@@ -181,6 +182,21 @@ def test_a_rigid_contact_is_no_mistake_where_json_has_no_infinity():
     assert CHECK.is_valid(case)
     case["vehicle"]["contacts"][1]["position"] = None
     assert not CHECK.is_valid(case)
+    contact = SCHEMA["definitions"]["vehicle"]["oneOf"]
+    (bogie,) = [kind["properties"] for kind in contact if kind["title"] == "bogie"]
+    assert bogie["contact_stiffness"]["description"].endswith("follow the rails. Default: inf.")
+
+
+def test_infinity_may_stand_where_the_reader_takes_it():
+    """Tyres of cars and trucks, one and both; stiffnesses of contacts, but no damping."""
+    taken = set()
+    for where, tables in in_other_words(lambda value: [math.inf] if isinstance(value, float) else []):
+        as_json = json.loads(json.dumps(tables).replace("Infinity", "null"))
+        # What damps beside the infinite spring is another matter.
+        faults = [message for message in faults_of(tables).values() if "at a rigid contact" not in message]
+        assert CHECK.is_valid(as_json) == (not faults), where
+        taken |= set() if faults else {where}
+    assert {"vehicle.tyre_stiffness", "vehicle.tyre_stiffness.1", "vehicle.contact_stiffness"} <= taken
 
 
 def test_the_command_writes_the_schema_that_the_templates_name(tmp_path, capsys, monkeypatch):

@@ -49,12 +49,15 @@ class Key:
         What it is where it is left out; NEEDED if it may not be.
     words : str
         What it says, with its unit in brackets.
+    infinite : bool
+        Whether its numbers may be infinite: documented as `float or inf`.
     """
 
     name: str
     type: Any
     default: Any = NEEDED
     words: str = ""
+    infinite: bool = False
 
     @property
     def needed(self) -> bool:
@@ -204,6 +207,7 @@ def keys_of(target: Callable[..., Any], *, without: Sequence[str] = ()) -> tuple
             type=_without_none(parameter.annotation),
             default=parameter.default,
             words=said[name].words if name in said else "",
+            infinite=name in said and said[name].type.endswith(" or inf"),
         )
         for name, parameter in inspect.signature(target, eval_str=True).parameters.items()
         if name not in without
