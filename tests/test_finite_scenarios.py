@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -201,6 +202,13 @@ def test_what_cannot_be_divided_is_not_stepped():
     rigid = replace(scenario, case=replace(scenario.case, guideway=mf.RigidGuideway()))
     with pytest.raises(ValueError, match=r"Euler–Bernoulli beam.*got a RigidGuideway"):
         rigid.run(method="cdfm")
+
+
+def test_an_undamped_vehicle_is_called_so(capsys):
+    assert main(["check", str(Path(__file__).parents[1] / "examples" / "bridge.toml")]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "2.651 Hz undamped: body 100 %" in told
+    assert "a vibration of the vehicle at 2.65 Hz is undamped: it does not settle" in told
 
 
 def test_the_command_steps_a_finite_road(bridge, tmp_path, capsys):

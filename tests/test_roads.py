@@ -246,7 +246,7 @@ def test_impossible_roads(text, name, message):
 
 
 def test_what_is_left_to_the_class_has_no_default_of_its_own():
-    """The exponents of a two-slope road are those of its type, and only without one those of the standard's drafts."""
+    """The exponents of a two-slope road are those of its type; without a type, those of the standard's drafts."""
     (key,) = [key for key in SPECTRUM.kinds["two_slope_road"].keys if key.name == "waviness"]
     assert key.default is None
     assert key.words.endswith("shorter ones. By default that of the class, with roughness [2.0, 1.5].")
