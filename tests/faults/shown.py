@@ -27,7 +27,7 @@ FAULTS = [
     Fault("infinity that is a mistake", "scenarios/schema.py", '["number", "null"]', '"number"'),
     Fault("list of no tables", "scenarios/schema.py", '{"minItems": 1}', "{}"),
     Fault("record without its widths", "guideways/files.py", "if array is not None}", 'if "across" not in name}'),
-    Fault("journey off the road", "scenarios/stepped.py", "(journey.start, end))", "(end, end))"),
+    Fault("journey off the road", "scenarios/stepped.py", "(journey.start, end)", "(end, end)"),
     # A scenario stepped through time.
     Fault(
         "weight of its own on a bridge",

@@ -157,7 +157,10 @@ class _Builder:
         """Refuse a journey off a finite road, or other than one that was recorded."""
         match case.guideway:
             case FiniteGuideway() as road:
-                return self._attempt("guideway:", lambda: require_journey(road, case.places, case.journey))
+                what = "the contacts" if isinstance(case, Drive) else "loads and observers"
+                return self._attempt(
+                    "guideway:", lambda: require_journey(road, case.places, case.journey, what=what)
+                )
             case SampledGuideway() as record:
                 at_speed = self._attempt("run:", lambda: record.require_speed(case.journey.speed))
                 return self._attempt("guideway:", lambda: record.columns(**case.offsets)) and at_speed
