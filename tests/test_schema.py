@@ -61,6 +61,10 @@ def test_the_templates_and_the_scenarios_that_ship_are_among_those_tried():
     assert len(FILES) > 10
 
 
+def test_a_spectrum_by_its_class_may_be_one_by_its_roughness():
+    assert wrong(CAR + '[roughness]\nkind = "sncf_track"\nroughness = 1e-7') == []
+
+
 @pytest.mark.parametrize("name", IN_ORDER)
 def test_what_is_in_order_passes(name):
     assert wrong(IN_ORDER[name]) == []
@@ -104,6 +108,9 @@ def test_what_is_in_order_passes(name):
         FINITE.replace("ends = ", "ents = "),
         FINITE.replace("across = 3", "across = 3.5"),
         CAR + '[roughness]\nkind = "iso_road"\nroad_class = "A"\ncoherence = 0.5',
+        CAR + '[roughness]\nkind = "iso_road"\nroad_class = "A"\nroughness = 1e-6',
+        CAR + '[roughness]\nkind = "fra_track"\nseed = 1',
+        CAR + '[roughness]\nkind = "laplace_road"\nkurtosis = 6.0\nsegment = 5.0\nspectrum = {kind = "iso_road"}',
         CAR + "[roughness]\n" + PARTS.replace("edge = 0.1", "edges = 0.1"),
     ],
 )

@@ -25,6 +25,12 @@ FAULTS = [
     Fault("part of a road for no journey", "scenarios/reading.py", "key.item == family.makes", "False"),
     Fault("kind that need not be said", "scenarios/schema.py", "kind.name != family.default else []", "0 else []"),
     Fault("infinity that is a mistake", "scenarios/schema.py", '["number", "null"]', '"number"'),
+    Fault(
+        "class and roughness at once",
+        "scenarios/schema.py",
+        "for name in kind.either]}",
+        "for name in kind.either[:1]]}",
+    ),
     Fault("list of no tables", "scenarios/schema.py", '{"minItems": 1}', "{}"),
     Fault("record without its widths", "guideways/files.py", "if array is not None}", 'if "across" not in name}'),
     Fault("journey off the road", "scenarios/stepped.py", "(journey.start, end)", "(end, end)"),

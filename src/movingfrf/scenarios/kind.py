@@ -100,12 +100,15 @@ class Kind:
         The keys that the table may have.
     words : str
         What it is, in a sentence.
+    either : tuple of str
+        Keys of which one is needed, and only one.
     """
 
     name: str
     make: Callable[..., Any]
     keys: tuple[Key, ...]
     words: str = ""
+    either: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, target: Callable[..., Any], *, name: str | None = None, without: Sequence[str] = ()) -> Kind:

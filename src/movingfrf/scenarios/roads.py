@@ -41,7 +41,9 @@ def by_class(spectrum: Any) -> Kind:
             return replace(key, default=None, words=words)
         return replace(key, default=None) if key.name in ("roughness", label) else key
 
-    return replace(Kind.of(spectrum), make=make, keys=tuple(map(either, (of_class, *own))))
+    return replace(
+        Kind.of(spectrum), make=make, keys=tuple(map(either, (of_class, *own))), either=(label, "roughness")
+    )
 
 
 REALISING = keys_of(realise, without=["spectrum", "length", "start"])

@@ -98,7 +98,7 @@ def _kind(kind: Kind, family: Family) -> Part:
         "properties": (said if several else {}) | {key.name: _key(key) for key in kind.keys},
         "required": (["kind"] if several and kind.name != family.default else []) + needed,
         "additionalProperties": False,
-    }
+    } | ({"oneOf": [{"required": [name]} for name in kind.either]} if kind.either else {})
 
 
 def _key(key: Key) -> Part:
