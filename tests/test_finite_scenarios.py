@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -187,6 +189,8 @@ def test_the_weight_travels_as_long_as_a_finite_road_has_room():
         (edited(), "cdmf", r"moving-frf, cdfm, sim with a vehicle, got 'cdmf' \(did you mean 'cdfm'\?\)"),
         (edited(), "newmark", "moving-frf, cdfm, sim with a vehicle, got 'newmark'"),
         (LOADS, "cdfm", "moving-frf, newmark with prescribed loads, got 'cdfm'"),
+        (OSCILLATOR, "newmark", "one of cdfm, sim with a vehicle on a finite road, got 'newmark'"),
+        (CONSTANT, "cdfm", "one of newmark with prescribed loads on a finite road, got 'cdfm'"),
         (OSCILLATOR, "moving-frf", "no moving FRF.*run FILE --method cdfm"),
         (CONSTANT, "moving-frf", "no moving FRF.*run FILE --method newmark"),
     ],
@@ -201,6 +205,22 @@ def test_what_cannot_be_divided_is_not_stepped():
     rigid = replace(scenario, case=replace(scenario.case, guideway=mf.RigidGuideway()))
     with pytest.raises(ValueError, match=r"Euler–Bernoulli beam.*got a RigidGuideway"):
         rigid.run(method="cdfm")
+
+
+@pytest.mark.parametrize(
+    ("text", "what"), [(OSCILLATOR, "the contacts travel"), (CONSTANT, "loads and observers travel")]
+)
+def test_who_leaves_a_finite_road_is_named_as_the_scenario_names_it(text, what):
+    """Nothing runs in where there is no room to; prescribed loads have no contacts."""
+    with pytest.raises(mf.ScenarioError, match=rf"to [\d.]+ m, where {what}, but it reaches from 0 m to 25 m"):
+        parse_scenario(re.sub(r"duration = \S+", "duration = 2.0", text))
+
+
+def test_an_undamped_vehicle_is_called_so(capsys):
+    assert main(["check", str(Path(__file__).parents[1] / "examples" / "bridge.toml")]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "2.651 Hz undamped: body 100 %" in told
+    assert "a vibration of the vehicle at 2.65 Hz is undamped: it does not settle" in told
 
 
 def test_the_command_steps_a_finite_road(bridge, tmp_path, capsys):

@@ -1,11 +1,13 @@
 """`movingfrf kinds`: what the tables of a scenario can be, on a terminal."""
 
+import re
 from itertools import takewhile
 
 import pytest
 
 from movingfrf.commands.main import main
 from movingfrf.scenarios.kinds import TABLES
+from movingfrf.scenarios.template import template
 
 TABLES_BY_NAME = {family.name: family for family in TABLES.values()}
 
@@ -40,6 +42,16 @@ def test_a_table_shows_all_its_kinds(capsys):
     text = told(capsys, "foundation")
     assert all(f"{kind}\n" in text for kind in TABLES_BY_NAME["foundation"].kinds)
     assert "Pasternak's G_p [N]" in text
+
+
+@pytest.mark.parametrize("name", ["scenario", "loads"])
+def test_templates_say_how_to_list_kinds_and_list_none_themselves(name):
+    """Where a table has several kinds, and by the name that the command knows."""
+    tables = re.findall(r"^\[+(?:\w+\.)?(\w+)\]+ *(?:# (.*))?$", template(name), re.MULTILINE)
+    several = {table for table, _ in tables if table in TABLES_BY_NAME and len(TABLES_BY_NAME[table].kinds) > 1}
+    assert {"guideway", "beam", "foundation"} < several
+    assert {table for table, words in tables if words == f"kinds: movingfrf kinds {table}"} == several
+    assert "kinds:" not in re.sub("kinds: movingfrf kinds", "", template(name))
 
 
 def test_another_name_is_refused(capsys):

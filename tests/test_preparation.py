@@ -133,6 +133,14 @@ def test_spikes_are_found_counted_and_bridged():
     said(untouched, "replaced 0 spikes")
 
 
+def test_words_of_a_key_promise_no_other_that_there_is_not():
+    """The window of the median is an argument in Python alone; what a scenario is told of it is its default."""
+    window = inspect.signature(mf.repaired).parameters["window"].default
+    words = documented(mf.prepared)["spike"].words
+    assert f"the median around it, over {window:g} m (`window` in Python)" in words
+    assert "by default" not in words
+
+
 @pytest.mark.parametrize("place", [slice(100, 106), slice(0, 1), slice(6000, 6001)])
 def test_what_is_too_long_for_a_spike_is_refused(place):
     z = np.zeros(X.size)

@@ -3,6 +3,7 @@
 import json
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ HARMONIC = re.sub(
     '[roughness]\nkind = "harmonic"\namplitude = 0.001\nwavelength = 4.0\n',
     TEMPLATE,
 )
+BRIDGE = (Path(__file__).parents[1] / "examples" / "bridge.toml").read_text(encoding="utf-8")
 
 
 def test_three_files_that_say_the_same(tmp_path, capsys):
@@ -63,7 +65,12 @@ def test_three_files_that_say_the_same(tmp_path, capsys):
 
 @pytest.mark.parametrize(
     ("text", "words"),
-    [(HARMONIC, "the roughness has no spectrum"), (LOADS, "prescribed loads have no random road")],
+    [
+        (HARMONIC, "the roughness has no spectrum"),
+        (LOADS, "prescribed loads have no random road"),
+        # Before the roughness, of which it would send to the method that has no answer either.
+        (BRIDGE, "guideway is a finite road, which is not the same everywhere and so has no moving FRF"),
+    ],
 )
 def test_what_has_no_spectrum_is_refused(tmp_path, capsys, text, words):
     scenario = tmp_path / "case.toml"

@@ -245,6 +245,16 @@ def test_impossible_roads(text, name, message):
     assert message in faults(text)[f"roughness.{name}"]
 
 
+def test_what_is_left_to_the_class_has_no_default_of_its_own():
+    """The exponents of a two-slope road are those of its type; without a type, those of the standard's drafts."""
+    (key,) = [key for key in SPECTRUM.kinds["two_slope_road"].keys if key.name == "waviness"]
+    assert key.default is None
+    assert key.words.endswith("shorter ones. By default that of the class, with roughness [2.0, 1.5].")
+    for keys, waviness in (('road_class = "poor minor road"', (2.28, 1.428)), ("roughness = 1e-6", (2.0, 1.5))):
+        assert road(f'kind = "two_slope_road"\n{keys}').spectrum.waviness == waviness
+    assert next(key for key in SPECTRUM.kinds["iso_road"].keys if key.name == "waviness").default == 2.0
+
+
 def test_keys_are_the_keywords_of_python():
     """All but the length and the start, which follow from the journey."""
     for kind in ROADS:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import tomllib
 from pathlib import Path
@@ -13,7 +14,7 @@ import pytest
 import movingfrf as mf
 from movingfrf.commands.main import main
 from movingfrf.scenarios.kinds import DRIVE, TABLES
-from movingfrf.scenarios.reading import parse_scenario
+from movingfrf.scenarios.reading import _Builder, parse_scenario
 from movingfrf.scenarios.schema import schema_as_json
 from movingfrf.scenarios.template import template
 from tests.test_roads import CAR, PARTS, SHAPE_KINDS, SPECTRUM_KINDS
@@ -60,6 +61,10 @@ def test_the_templates_and_the_scenarios_that_ship_are_among_those_tried():
     assert len(FILES) > 10
 
 
+def test_a_spectrum_by_its_class_may_be_one_by_its_roughness():
+    assert wrong(CAR + '[roughness]\nkind = "sncf_track"\nroughness = 1e-7') == []
+
+
 @pytest.mark.parametrize("name", IN_ORDER)
 def test_what_is_in_order_passes(name):
     assert wrong(IN_ORDER[name]) == []
@@ -103,6 +108,9 @@ def test_what_is_in_order_passes(name):
         FINITE.replace("ends = ", "ents = "),
         FINITE.replace("across = 3", "across = 3.5"),
         CAR + '[roughness]\nkind = "iso_road"\nroad_class = "A"\ncoherence = 0.5',
+        CAR + '[roughness]\nkind = "iso_road"\nroad_class = "A"\nroughness = 1e-6',
+        CAR + '[roughness]\nkind = "fra_track"\nseed = 1',
+        CAR + '[roughness]\nkind = "laplace_road"\nkurtosis = 6.0\nsegment = 5.0\nspectrum = {kind = "iso_road"}',
         CAR + "[roughness]\n" + PARTS.replace("edge = 0.1", "edges = 0.1"),
     ],
 )
@@ -110,6 +118,51 @@ def test_what_is_wrong_is_refused_by_schema_and_reader(text):
     assert wrong(text)
     with pytest.raises(mf.ScenarioError):
         parse_scenario(text)
+
+
+def other_values(table, new):
+    """Give every value of a table, and every one within it, in turn other values: where it stands, the table."""
+    for place, value in list(table.items() if isinstance(table, dict) else enumerate(table)):
+        within = other_values(value, new) if isinstance(value, (dict, list)) else ()
+        for where, other in [*(((), one) for one in new(value)), *within]:
+            changed = table.copy()
+            changed[place] = other
+            yield (place, *where), changed
+
+
+def faults_of(tables):
+    """Ask the reader what is wrong with tables."""
+    builder = _Builder(ROOT / "examples")
+    builder.scenario(tables, "case", "")
+    return {fault.name: fault.message for fault in builder.faults}
+
+
+def in_other_words(new):
+    """All of `IN_ORDER` that needs no other file, every table once, with one value after another replaced."""
+    tried = []
+    for text in IN_ORDER.values():
+        tables = tomllib.loads(text)
+        if faults_of(tables):
+            continue
+        for where, changed in other_values({key: one for key, one in tables.items() if one not in tried}, new):
+            yield ".".join(map(str, where)), tables | changed
+        tried += tables.values()
+
+
+def test_a_value_of_another_type_is_a_fault_and_never_a_defect():
+    """Also where a shape goes on to calculate with what it has refused."""
+    refused = [
+        faults_of(tables) for _, tables in in_other_words(lambda value: [1.0, "x", True, [], {}, [value] * 2])
+    ]
+    assert len(refused) > 1000
+    assert sum(not faults for faults in refused) < len(refused) / 10
+    bridge = IN_ORDER["bridge.toml"]
+    assert faults_of(tomllib.loads(bridge.replace('ends = "pinned"', "ends = 1.0"))) == {
+        "guideway.ends": "must be a text or [a text, a text], got 1.0"
+    }
+    slabs = tomllib.loads(IN_ORDER["roughness faulted_slabs"])
+    slabs["roughness"]["spacing"] = "5"
+    assert faults_of(slabs) == {"roughness.spacing": "must be a number [m], got '5'"}
 
 
 def test_every_kind_and_key_is_described():
@@ -136,6 +189,21 @@ def test_a_rigid_contact_is_no_mistake_where_json_has_no_infinity():
     assert CHECK.is_valid(case)
     case["vehicle"]["contacts"][1]["position"] = None
     assert not CHECK.is_valid(case)
+    contact = SCHEMA["definitions"]["vehicle"]["oneOf"]
+    (bogie,) = [kind["properties"] for kind in contact if kind["title"] == "bogie"]
+    assert bogie["contact_stiffness"]["description"].endswith("follow the rails. Default: inf.")
+
+
+def test_infinity_may_stand_where_the_reader_takes_it():
+    """Tyres of cars and trucks, one and both; stiffnesses of contacts, but no damping."""
+    taken = set()
+    for where, tables in in_other_words(lambda value: [math.inf] if isinstance(value, float) else []):
+        as_json = json.loads(json.dumps(tables).replace("Infinity", "null"))
+        # What damps beside the infinite spring is another matter.
+        faults = [message for message in faults_of(tables).values() if "at a rigid contact" not in message]
+        assert CHECK.is_valid(as_json) == (not faults), where
+        taken |= set() if faults else {where}
+    assert {"vehicle.tyre_stiffness", "vehicle.tyre_stiffness.1", "vehicle.contact_stiffness"} <= taken
 
 
 def test_the_command_writes_the_schema_that_the_templates_name(tmp_path, capsys, monkeypatch):

@@ -14,14 +14,26 @@ FAULTS = [
     ),
     # What a table of a scenario can be.
     Fault("key that may be left out", "scenarios/kind.py", "=_without_none(", "=("),
+    Fault(
+        "value of another type a defect",
+        "scenarios/kind.py",
+        '"" if fits(value, self.type) else',
+        '"" if value else',
+    ),
     Fault("keys that all have to be there", "commands/kinds.py", '"" if key.needed else', '"" if 1 else'),
     Fault("unit of the neighbour", "_basics/documented.py", "[{units[place]}", "[{units[0]}"),
     Fault("part of a road for no journey", "scenarios/reading.py", "key.item == family.makes", "False"),
     Fault("kind that need not be said", "scenarios/schema.py", "kind.name != family.default else []", "0 else []"),
     Fault("infinity that is a mistake", "scenarios/schema.py", '["number", "null"]', '"number"'),
+    Fault(
+        "class and roughness at once",
+        "scenarios/schema.py",
+        "for name in kind.either]}",
+        "for name in kind.either[:1]]}",
+    ),
     Fault("list of no tables", "scenarios/schema.py", '{"minItems": 1}', "{}"),
     Fault("record without its widths", "guideways/files.py", "if array is not None}", 'if "across" not in name}'),
-    Fault("journey off the road", "scenarios/stepped.py", "(journey.start, end))", "(end, end))"),
+    Fault("journey off the road", "scenarios/stepped.py", "(journey.start, end)", "(end, end)"),
     # A scenario stepped through time.
     Fault(
         "weight of its own on a bridge",

@@ -180,6 +180,8 @@ def test_a_vehicle_that_leaves_the_road(method):
         drive(road, TRUCK, method, duration=4.0)
     with pytest.raises(ValueError, match=r"road must reach from -22\.0539 m to"):
         drive(road, TRUCK, method, run_in=2.0)
+    with pytest.raises(ValueError, match=r"where the contacts travel, but"):
+        drive(road, TRUCK, method, run_in=0.0, duration=5.0)
     with pytest.raises(ValueError, match=r"road must reach from -22\.0539 m to"):
         drive(road, TRUCK, method, start=-10.0)
     # A road that travels along needs to be no longer than the vehicle.

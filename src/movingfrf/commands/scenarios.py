@@ -217,7 +217,7 @@ def random(
         drive = scenario.case
         if not isinstance(drive, Drive):
             raise ValueError(f"{file}: prescribed loads have no random road; a vehicle and a spectrum are needed")
-        road = drive.road
+        guideway, road = require_endless(drive.guideway, instead="cdfm"), drive.road
         if road.spectrum is None:
             raise ValueError(
                 f"{file}: the roughness has no spectrum ({road.description}): it is one road, not all of a kind. "
@@ -230,7 +230,7 @@ def random(
             warnings.simplefilter("ignore", ValidityWarning)
             response = partial(
                 random_response,
-                require_endless(drive.guideway, instead="cdfm"),
+                guideway,
                 drive.vehicle,
                 road.spectrum,
                 speed=drive.journey.speed,

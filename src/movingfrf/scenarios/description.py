@@ -34,6 +34,7 @@ class Unusual:
     """What of a vehicle is worth a remark [conventions]."""
 
     damping: float = 0.02  # share of critical damping below which a vibration takes long to settle
+    undamped: float = 1e-9  # share of critical damping that is rounding, of either sign
     footprint: float = 1.0  # length beyond that of any tyre [m]
 
 
@@ -106,8 +107,13 @@ def _remarks_on_vehicle(vehicle: Vehicle, journey: Journey) -> list[str]:
         )
     if frequencies.size and ratios.min() < UNUSUAL.damping:
         found.append(
-            f"a vibration of the vehicle at {frequencies[ratios.argmin()]:.3g} Hz has {100 * ratios.min():.2g} % "
-            "of critical damping: it takes long to settle, and its size depends on that number"
+            f"a vibration of the vehicle at {frequencies[ratios.argmin()]:.3g} Hz "
+            + (
+                "is undamped: it does not settle"
+                if abs(ratios.min()) < UNUSUAL.undamped
+                else f"has {100 * ratios.min():.2g} % of critical damping: it takes long to settle, and its size "
+                "depends on that number"
+            )
         )
     longest = max((contact.footprint for contact in vehicle.contacts), default=0.0)
     if longest > UNUSUAL.footprint:
@@ -210,10 +216,14 @@ def _vibrations(vehicle: Vehicle, same: float = 1e-6) -> list[tuple[str, str]]:
     return [
         (
             f"{group[0].frequency:.3f} Hz" + (f" ({len(group)} times)" if len(group) > 1 else ""),
-            f"{100 * group[0].damping_ratio:.1f} % damping: {_alike(group)}",
+            f"{_damping(group[0].damping_ratio)}: {_alike(group)}",
         )
         for group in groups
     ]
+
+
+def _damping(ratio: float) -> str:
+    return "undamped" if abs(ratio) < UNUSUAL.undamped else f"{100 * ratio:.1f} % damping"
 
 
 def _alike(group: Sequence[Mode]) -> str:

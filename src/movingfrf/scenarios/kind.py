@@ -16,10 +16,22 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
 
+from numpy.typing import ArrayLike
+
+from movingfrf._basics.checks import shown
 from movingfrf._basics.documented import documented
 
 # Default of a key that has none.
 NEEDED = inspect.Parameter.empty
+
+# Python type of a value → what TOML makes of it, and its name.
+VALUES: Mapping[Any, tuple[Any, str]] = {
+    float: ((int, float), "a number"),
+    int: (int, "a whole number"),
+    bool: (bool, "true or false"),
+    str: (str, "a text"),
+    Path: (str, "the name of a file"),
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,12 +49,15 @@ class Key:
         What it is where it is left out; NEEDED if it may not be.
     words : str
         What it says, with its unit in brackets.
+    infinite : bool
+        Whether its numbers may be infinite: documented as `float or inf`.
     """
 
     name: str
     type: Any
     default: Any = NEEDED
     words: str = ""
+    infinite: bool = False
 
     @property
     def needed(self) -> bool:
@@ -65,6 +80,11 @@ class Key:
         """Whether it names a file."""
         return Path in (self.type, *get_args(self.type))
 
+    def refusal(self, value: Any) -> str:
+        """Say that a value of the file is of another type; empty if it is not."""
+        unit = f" [{self.unit}]" if self.unit else ""
+        return "" if fits(value, self.type) else f"must be {in_words(self.type)}{unit}, got {shown(value)}"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kind:
@@ -80,12 +100,15 @@ class Kind:
         The keys that the table may have.
     words : str
         What it is, in a sentence.
+    either : tuple of str
+        Keys of which one is needed, and only one.
     """
 
     name: str
     make: Callable[..., Any]
     keys: tuple[Key, ...]
     words: str = ""
+    either: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, target: Callable[..., Any], *, name: str | None = None, without: Sequence[str] = ()) -> Kind:
@@ -187,10 +210,43 @@ def keys_of(target: Callable[..., Any], *, without: Sequence[str] = ()) -> tuple
             type=_without_none(parameter.annotation),
             default=parameter.default,
             words=said[name].words if name in said else "",
+            infinite=name in said and said[name].type.endswith(" or inf"),
         )
         for name, parameter in inspect.signature(target, eval_str=True).parameters.items()
         if name not in without
     )
+
+
+def fits(value: Any, wanted: Any) -> bool:
+    """Whether a value of a file is of a type; what is made of tables is looked at where they are read."""
+    items, origin = get_args(wanted), get_origin(wanted)
+    if wanted in VALUES:
+        return isinstance(value, VALUES[wanted][0]) and (wanted is bool or not isinstance(value, bool))
+    if wanted == ArrayLike:
+        return fits(value, float) or (isinstance(value, list) and all(fits(one, ArrayLike) for one in value))
+    if origin in (Union, UnionType):
+        return any(fits(value, one) for one in items)
+    if origin is tuple:
+        return isinstance(value, list) and len(value) == len(items) and all(map(fits, value, items))
+    if origin is Sequence:
+        return isinstance(value, list) and all(fits(one, items[0]) for one in value)
+    if origin is Mapping:
+        return isinstance(value, dict) and all(fits(one, items[1]) for one in value.values())
+    return True
+
+
+def in_words(wanted: Any) -> str:
+    """Name a type of values."""
+    items, origin = get_args(wanted), get_origin(wanted)
+    if wanted in VALUES:
+        return VALUES[wanted][1]
+    if wanted == ArrayLike:
+        return "a number or an array of numbers"
+    if origin in (Union, UnionType):
+        return " or ".join(map(in_words, items))
+    if origin is tuple:
+        return f"[{', '.join(map(in_words, items))}]"
+    return "a table" if origin is Mapping else f"a list, each {in_words(items[0])}"
 
 
 def chosen(given: Mapping[str, Any], keys: Sequence[Key]) -> dict[str, Any]:

@@ -157,7 +157,10 @@ class _Builder:
         """Refuse a journey off a finite road, or other than one that was recorded."""
         match case.guideway:
             case FiniteGuideway() as road:
-                return self._attempt("guideway:", lambda: require_journey(road, case.places, case.journey))
+                what = "the contacts" if isinstance(case, Drive) else "loads and observers"
+                return self._attempt(
+                    "guideway:", lambda: require_journey(road, case.places, case.journey, what=what)
+                )
             case SampledGuideway() as record:
                 at_speed = self._attempt("run:", lambda: record.require_speed(case.journey.speed))
                 return self._attempt("guideway:", lambda: record.columns(**case.offsets)) and at_speed
@@ -228,8 +231,12 @@ class _Builder:
                 self.faults.append(Fault(f"{path}:", str(error)))
             return None
         except (TypeError, AttributeError):
-            # A stand-in may be of no use to a function that does not check first; its own errors are defects.
-            if not broken:
+            # A stand-in, or a value of another type, is of no use to a function that goes on before it refuses;
+            # its other errors are defects.
+            said = [key for key in kind.keys if key.name in table.keys() - broken]
+            refusals = {key.name: key.refusal(table[key.name]) for key in said}
+            self.faults += [Fault(f"{path}.{name}", message) for name, message in refusals.items() if message]
+            if not broken and not any(refusals.values()):
                 raise
             return None
         return None if broken else made

@@ -20,13 +20,13 @@ from movingfrf.roughness.spectra.rail import ChineseBallastlessTrack, FraTrack, 
 from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.roughness.spectra.tabulated import TabulatedSpectrum, ThirdOctaveSpectrum, iso3095_limit
 from movingfrf.roughness.spectra.two_slope import TwoSlopeRoad
-from movingfrf.scenarios.kind import Kind, chosen, keys_of
+from movingfrf.scenarios.kind import Key, Kind, chosen, keys_of
 
 
 def by_class(spectrum: Any) -> Kind:
     """Make a spectrum either from its class or from its roughness."""
-    own, classed = keys_of(spectrum), keys_of(spectrum.of_class)
-    label = classed[0].name
+    (of_class, *others), own = keys_of(spectrum.of_class), keys_of(spectrum)
+    label, left_to_it = of_class.name, {key.name for key in others if key.default is None}
 
     def make(*, roughness: float | None = None, **given: Any) -> Spectrum:
         named = given.pop(label, None)
@@ -35,8 +35,15 @@ def by_class(spectrum: Any) -> Kind:
                 check.refuse(label, "or roughness is needed: a class or a number, not both")
         return spectrum.of_class(named, **given) if roughness is None else spectrum(roughness=roughness, **given)
 
-    keys = [replace(key, default=None) if key.name in ("roughness", label) else key for key in (classed[0], *own)]
-    return replace(Kind.of(spectrum), make=make, keys=tuple(keys))
+    def either(key: Key) -> Key:
+        if key.name in left_to_it:
+            words = f"{key.words} By default that of the class, with roughness {list(key.default)}."
+            return replace(key, default=None, words=words)
+        return replace(key, default=None) if key.name in ("roughness", label) else key
+
+    return replace(
+        Kind.of(spectrum), make=make, keys=tuple(map(either, (of_class, *own))), either=(label, "roughness")
+    )
 
 
 REALISING = keys_of(realise, without=["spectrum", "length", "start"])

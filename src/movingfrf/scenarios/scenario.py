@@ -106,7 +106,7 @@ class Drive:
         SolveError
             If the case has no meaningful answer.
         """
-        _require_method(method, (MOVING_FRF, *COUPLED_BY), "a vehicle")
+        _require_method(method, (MOVING_FRF, *COUPLED_BY), "a vehicle", self.guideway)
         if method in COUPLED_BY:
             result = coupled(
                 (self.guideway, self.vehicle, self.road.profile),
@@ -178,7 +178,7 @@ class Passage:
         SolveError
             If the case has no meaningful answer.
         """
-        _require_method(method, (MOVING_FRF, NEWMARK), "prescribed loads")
+        _require_method(method, (MOVING_FRF, NEWMARK), "prescribed loads", self.guideway)
         if method == NEWMARK:
             return loaded(
                 self.guideway,
@@ -327,7 +327,9 @@ def passage_of(scenario: Scenario) -> Passage:
     raise ValueError(f"{scenario.name}: a scenario with prescribed loads is wanted, it has a vehicle")
 
 
-def _require_method(method: str, known: tuple[str, ...], what: str) -> None:
+def _require_method(method: str, known: tuple[str, ...], what: str, guideway: Guideway | FiniteGuideway) -> None:
     if method not in known:
+        if isinstance(guideway, FiniteGuideway):
+            known, what = tuple(one for one in known if one != MOVING_FRF), f"{what} on a finite road"
         hint = "" if method in (*COUPLED_BY, NEWMARK) else nearest(str(method), known)
         raise ValueError(f"method must be one of {', '.join(known)} with {what}, got {shown(method)}{hint}")

@@ -98,14 +98,11 @@ def _kind(kind: Kind, family: Family) -> Part:
         "properties": (said if several else {}) | {key.name: _key(key) for key in kind.keys},
         "required": (["kind"] if several and kind.name != family.default else []) + needed,
         "additionalProperties": False,
-    }
+    } | ({"oneOf": [{"required": [name]} for name in kind.either]} if kind.either else {})
 
 
 def _key(key: Key) -> Part:
-    part: Part = {"description": _words(key), **_type(key.type)}
-    if part.get("type") == "number" and "`inf`" in key.words:
-        # JSON has no infinity: what reads TOML for it makes nothing of `inf`.
-        part["type"] = ["number", "null"]
+    part: Part = {"description": _words(key), **_type(key.type, infinite=key.infinite)}
     if not key.needed and key.default is not None and key.default != math.inf:
         part["default"] = key.default
     return part
@@ -116,11 +113,14 @@ def _words(key: Key) -> str:
         return key.words
     if key.default is None:
         return f"{key.words} May be left out."
-    return f"{key.words} Default: {json.dumps(key.default)}."
+    return f"{key.words} Default: {json.dumps(key.default).replace('Infinity', 'inf')}."
 
 
-def _type(given: Any) -> Part:
+def _type(given: Any, *, infinite: bool = False) -> Part:
     """Describe the values of a Python type."""
+    if given is float and infinite:
+        # JSON has no infinity: what reads TOML for it makes nothing of `inf`.
+        return {"type": ["number", "null"]}
     if given in TABLES:
         return _table(TABLES[given])
     if given in VALUES:
@@ -132,7 +132,12 @@ def _type(given: Any) -> Part:
         different = [part for n, part in enumerate(parts) if part not in parts[:n]]
         return {"anyOf": different} if len(different) > 1 else different[0]
     if origin is tuple:
-        return {"type": "array", "items": _type(items[0]), "minItems": len(items), "maxItems": len(items)}
+        return {
+            "type": "array",
+            "items": _type(items[0], infinite=infinite),
+            "minItems": len(items),
+            "maxItems": len(items),
+        }
     if origin is Sequence:
         return {"type": "array", "items": _type(items[0])} | ({"minItems": 1} if items[0] in TABLES else {})
     if origin is Mapping:

@@ -129,7 +129,7 @@ def require_endless(guideway: Guideway | FiniteGuideway, *, instead: str) -> Gui
     return guideway
 
 
-def require_journey(road: FiniteGuideway, places: FloatArray, journey: Journey) -> None:
+def require_journey(road: FiniteGuideway, places: FloatArray, journey: Journey, *, what: str) -> None:
     """Refuse a journey that leads off a finite road.
 
     Parameters
@@ -140,6 +140,8 @@ def require_journey(road: FiniteGuideway, places: FloatArray, journey: Journey) 
         Where contacts, or loads and observers, stand, ahead of the reference point [m].
     journey : Journey
         How they travel.
+    what : str
+        What they are, for the message.
 
     Raises
     ------
@@ -148,7 +150,8 @@ def require_journey(road: FiniteGuideway, places: FloatArray, journey: Journey) 
     """
     end = journey.start + journey.speed * journey.time_step * journey.samples
     with checking() as check:
-        require_on_guideway(check, road, places, (0.0, road.spacing) if road.travels else (journey.start, end))
+        travel = (0.0, road.spacing) if road.travels else (journey.start, end)
+        require_on_guideway(check, road, places, travel, what=f"{what} travel")
 
 
 def divisible(guideway: Guideway) -> Track:

@@ -317,7 +317,11 @@ def prepared_journey(
         before, after = -journey.speed * run_in, journey.distance
         # A guideway that travels along follows element by element.
         require_on_guideway(
-            check, guideway, positions, (0.0, guideway.spacing) if guideway.travels else (before, after)
+            check,
+            guideway,
+            positions,
+            (0.0, guideway.spacing) if guideway.travels else (before, after),
+            what="the contacts travel (run-in included)" if run_in else "the contacts travel",
         )
         require_across(check, guideway, vehicle.across)
         require_apart(check, guideway, positions)

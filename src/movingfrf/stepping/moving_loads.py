@@ -102,7 +102,11 @@ def newmark_loads(
         # A guideway that travels along follows element by element.
         travelled = road.spacing if road.travels else speed * time_step * len(forces)
         require_on_guideway(
-            check, road, start + np.concatenate([at, points]), (min(0.0, travelled), max(0.0, travelled))
+            check,
+            road,
+            start + np.concatenate([at, points]),
+            (min(0.0, travelled), max(0.0, travelled)),
+            what="loads and observers travel",
         )
         require_stable_scheme(check, road, row, time_step)
     require_memory(16.0 * len(forces) * (at.size + points.size), f"{len(forces)} steps of {time_step:g} s")

@@ -34,7 +34,7 @@ def require_kinds(check: Checks, **given: tuple[object, type]) -> None:
 
 
 def require_on_guideway(
-    check: Checks, guideway: FiniteGuideway, positions: FloatArray, travel: tuple[float, float]
+    check: Checks, guideway: FiniteGuideway, positions: FloatArray, travel: tuple[float, float], *, what: str
 ) -> None:
     """Refuse a journey that leads off the guideway.
 
@@ -48,14 +48,16 @@ def require_on_guideway(
         Where contacts and observers stand [m].
     travel : tuple of float
         How far they travel, backwards and forwards [m].
+    what : str
+        What they do, for the message: "the contacts travel".
     """
     first, last = positions.min() + min(travel), positions.max() + max(travel)
     slack = ELEMENT_ROUNDING * (1 + abs(last))
     if first < guideway.interval[0] - slack or last > guideway.interval[1] + slack:
         check.refuse(
             "road",
-            f"must reach from {first:.6g} m to {last:.6g} m, where the contacts travel (run-in included), but it "
-            f"reaches from {guideway.interval[0]:.6g} m to {guideway.interval[1]:.6g} m",
+            f"must reach from {first:.6g} m to {last:.6g} m, where {what}, but it reaches "
+            f"from {guideway.interval[0]:.6g} m to {guideway.interval[1]:.6g} m",
         )
 
 

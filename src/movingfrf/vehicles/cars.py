@@ -24,8 +24,10 @@ def quarter_car(
     ----------
     body_mass, wheel_mass : float
         Sprung and unsprung mass [kg].
-    suspension_stiffness, tyre_stiffness : float
+    suspension_stiffness : float
         Stiffness [N/m].
+    tyre_stiffness : float or inf
+        Stiffness [N/m]; `inf` for a wheel that follows the road rigidly.
     suspension_damping, tyre_damping : float
         Damping [N s/m].
     footprint : float
@@ -92,8 +94,10 @@ def half_car(
         Moment of inertia of the sprung mass about its centre of mass [kg m²].
     wheel_masses : tuple of float
         Unsprung masses [kg].
-    suspension_stiffness, tyre_stiffness : tuple of float
+    suspension_stiffness : tuple of float
         Stiffness per axle [N/m].
+    tyre_stiffness : tuple of float or inf
+        Stiffness per axle [N/m]; `inf` for wheels that follow the road rigidly.
     suspension_damping, tyre_damping : tuple of float
         Damping per axle [N s/m].
     axles : tuple of float
@@ -171,8 +175,10 @@ def full_car(
         Moments of inertia of the sprung mass about its centre of mass [kg m²].
     wheel_masses : tuple of float
         Unsprung mass at one wheel [kg].
-    suspension_stiffness, tyre_stiffness : tuple of float
+    suspension_stiffness : tuple of float
         Stiffness at one wheel [N/m].
+    tyre_stiffness : tuple of float or inf
+        Stiffness at one wheel [N/m]; `inf` for wheels that follow the road rigidly.
     suspension_damping, tyre_damping : tuple of float
         Damping at one wheel [N s/m].
     axles : tuple of float

@@ -19,7 +19,7 @@ class Contact:
     ----------
     position : float
         Ahead of the vehicle's reference point [m], positive in the direction of travel.
-    stiffness : float
+    stiffness : float or inf
         Contact (tyre) stiffness [N/m]; `inf` for a contact that follows the guideway rigidly.
     damping : float
         Contact damping [N s/m]; nothing for a rigid contact.

@@ -58,7 +58,7 @@ def wheelset(*, mass: float, contact_stiffness: float = np.inf, contact_damping:
     ----------
     mass : float
         Mass, with what of the vehicle moves along [kg].
-    contact_stiffness : float
+    contact_stiffness : float or inf
         Stiffness of the contact [N/m]; `inf`: the wheelset follows the rail.
     contact_damping : float
         Damping of the contact [N s/m].
@@ -123,8 +123,10 @@ def bogie(
         Mass of the body above this bogie [kg]; 0: none.
     secondary_stiffness, secondary_damping : float
         Between frame and body, both sides together [N/m, N s/m].
-    contact_stiffness, contact_damping : float
-        Of one wheelset's contacts, both rails together [N/m, N s/m]; `inf`: the wheels follow the rails.
+    contact_stiffness : float or inf
+        Of one wheelset's contacts, both rails together [N/m]; `inf`: the wheels follow the rails.
+    contact_damping : float
+        Of one wheelset's contacts, both rails together [N s/m]; nothing where they are rigid.
 
     Returns
     -------
@@ -211,8 +213,10 @@ def carriage(
         Between one bogie and the body [N/m, N s/m].
     bogie_spacing, axle_spacing : float
         Distance between bogie centres, and between the wheelsets of a bogie [m].
-    contact_stiffness, contact_damping : float
-        Of one wheelset's contacts, both rails together [N/m, N s/m]; `inf`: the wheels follow the rails.
+    contact_stiffness : float or inf
+        Of one wheelset's contacts, both rails together [N/m]; `inf`: the wheels follow the rails.
+    contact_damping : float
+        Of one wheelset's contacts, both rails together [N s/m]; nothing where they are rigid.
 
     Returns
     -------

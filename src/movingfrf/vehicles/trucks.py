@@ -28,8 +28,10 @@ class Axle(_RunningGear):
         Place ahead of the vehicle's reference point [m].
     mass : float
         Unsprung mass [kg].
-    suspension_stiffness, tyre_stiffness : float
+    suspension_stiffness : float
         Stiffness [N/m].
+    tyre_stiffness : float or inf
+        Stiffness [N/m]; `inf` for tyres that follow the road rigidly.
     suspension_damping, tyre_damping : float
         Damping [N s/m].
     footprint : float
@@ -84,8 +86,8 @@ class WalkingBeam(_RunningGear):
         Stiffness at the pivot [N/m].
     suspension_damping : float
         Damping at the pivot [N s/m].
-    tyre_stiffness : float
-        Stiffness of the tyres of one axle [N/m].
+    tyre_stiffness : float or inf
+        Stiffness of the tyres of one axle [N/m]; `inf` for tyres that follow the road rigidly.
     tyre_damping : float
         Damping of the tyres of one axle [N s/m].
     footprint : float

@@ -17,7 +17,8 @@ def repaired(profile: Profile, *, spike: float, window: float = 1.0, longest: fl
     profile : Profile
         The road, at an even step.
     spike : float
-        How far an elevation may lie from the median around it, of 1 m by default, before it is replaced [m].
+        How far an elevation may lie from the median around it, over 1 m (`window` in Python), before it is
+        replaced [m].
     window : float
         Length of road that the median is taken over [m].
     longest : float
