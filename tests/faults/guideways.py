@@ -41,6 +41,7 @@ FAULTS = [
     # What whoever writes a guideway need not write.
     Fault("places across forgotten", "guideways/guideway.py", "    if wide:", "    if False:"),
     Fault("offset for its mirror", "guideways/guideway.py", "rows[back.ravel()]", "rows[back.ravel()[::-1]]"),
+    Fault("offsets for frequencies", "guideways/guideway.py", "if found.shape not in {", "if False and {"),
     # Plates.
     Fault(
         "place of the source for the offset across",

@@ -102,8 +102,8 @@ def at_offsets(
     ----------
     frf : callable
         Called once with what is asked for: `ahead`, `across`, `source_across`, shape (offset, 1) [m], `speed`
-        [m/s], `omega`, shape (frequency,) [rad/s], and `derivative`. Returns the moving FRF [m/N/m^derivative] in
-        an array that broadcasts to (offset, frequency).
+        [m/s], `omega`, shape (frequency,) [rad/s], and `derivative`. Returns the moving FRF [m/N/m^derivative] as
+        one number or in an array of shape (offset, frequency), where either side may be 1: the same for all.
     ahead, across, source_across : array_like
         As `Guideway.moving_frf` was given them [m].
     speed : float
@@ -125,8 +125,8 @@ def at_offsets(
     Raises
     ------
     ValueError
-        If an argument is not finite, ω has a positive imaginary part, or the derivative is not a whole number or
-        not known.
+        If an argument is not finite, ω has a positive imaginary part, the derivative is not a whole number or not
+        known, or `frf` returns another shape.
 
     Examples
     --------
@@ -162,8 +162,15 @@ def at_offsets(
         along, back = np.unique(given[0], return_inverse=True)
         distinct = np.stack([along, 0 * along, 0 * along])
     columns = distinct[:, :, None]
-    found = frf(Asked(columns[0], columns[1], columns[2], speed, frequencies, derivative))
-    rows = np.broadcast_to(found, (distinct.shape[1], frequencies.size)).astype(complex, copy=False)
+    wanted = distinct.shape[1], frequencies.size
+    found = np.asarray(frf(Asked(columns[0], columns[1], columns[2], speed, frequencies, derivative)))
+    # Of a single axis NumPy's rules would say that it is frequency.
+    if found.shape not in {(), wanted, (wanted[0], 1), (1, wanted[1]), (1, 1)}:
+        raise ValueError(
+            "frf must return one number or an array of shape (offset, frequency), either side of which may be 1, here "
+            f"{wanted}, got {found.shape}"
+        )
+    rows = np.broadcast_to(found, wanted).astype(complex, copy=False)
     placed: ComplexArray = rows[back.ravel()].T.reshape(frequencies.size, *shape)
     return placed
 
