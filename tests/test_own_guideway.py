@@ -138,7 +138,7 @@ def test_another_shape_is_refused_even_where_counts_agree(shape):
         ({"omega": [[1.0]]}, "omega must be finite, one-dimensional"),
         ({"derivative": -1}, "derivative must be a whole number of at least 0"),
         ({"derivative": 1}, "derivative must be 0: this guideway knows deflections only, got 1"),
-        ({"derivative": 3, "derivatives": 2}, "derivative must be at most 2, got 3"),
+        ({"derivative": 3, "known_derivatives": 2}, "derivative must be at most 2, got 3"),
         ({"ahead": np.zeros(2), "across": np.zeros(3)}, "shape mismatch"),
     ],
 )
@@ -150,4 +150,7 @@ def test_what_is_refused(given, message):
 
 def test_derivatives_that_are_known_are_asked_for():
     for known in (2, None):
-        assert mf.at_offsets(lambda asked: asked.derivative, 0.0, 0.0, [1.0], derivative=2, derivatives=known) == 2
+        assert (
+            mf.at_offsets(lambda asked: asked.derivative, 0.0, 0.0, [1.0], derivative=2, known_derivatives=known)
+            == 2
+        )

@@ -94,7 +94,7 @@ def at_offsets(
     source_across: ArrayLike = 0.0,
     derivative: int = 0,
     wide: bool = False,
-    derivatives: int | None = 0,
+    known_derivatives: int | None = 0,
 ) -> ComplexArray:
     """Answer as `Guideway.moving_frf` does, by a function of distinct offsets.
 
@@ -111,11 +111,11 @@ def at_offsets(
     omega : array_like, shape (frequency,)
         Angular frequency in the moving frame [rad/s].
     derivative : int
-        Order of the derivative with respect to x, a whole number of.
+        Order of the derivative with respect to x, a whole number of at least zero.
     wide : bool
         Whether places across make a difference; otherwise `across` and `source_across` of what is asked are zero.
-    derivatives : int, optional
-        Number of derivatives that `frf` knows; None: all.
+    known_derivatives : int, optional
+        Highest derivative that `frf` knows; None: all.
 
     Returns
     -------
@@ -150,8 +150,10 @@ def at_offsets(
         if frequencies.ndim != 1 or not np.isfinite(frequencies).all() or (frequencies.imag > 0).any():
             check.refuse("omega", "must be finite, one-dimensional and have Im ω ≤ 0 [rad/s]")
         derivative = check.whole("derivative", derivative)
-        if derivatives is not None and derivative > derivatives:
-            knows = f"at most {derivatives}" if derivatives else "0: this guideway knows deflections only"
+        if known_derivatives is not None and derivative > known_derivatives:
+            knows = (
+                f"at most {known_derivatives}" if known_derivatives else "0: this guideway knows deflections only"
+            )
             check.refuse("derivative", f"must be {knows}, got {derivative}")
     shape = np.broadcast_shapes(*(place.shape for place in places))
     given = np.stack([np.broadcast_to(place, shape).ravel() for place in places])

@@ -107,7 +107,7 @@ class Track(Remembering):
             across=across,
             source_across=source_across,
             derivative=derivative,
-            derivatives=None,
+            known_derivatives=None,
         )
 
     def _frf(self, asked: Asked) -> ComplexArray:
