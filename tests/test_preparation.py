@@ -57,14 +57,15 @@ def test_low_pass_keeps_its_share_and_shifts_nothing(length):
 
 
 def test_the_shortest_and_the_longest_wavelength_are_taken():
-    """Steps that are no sums of powers of two: four of them are 0.2 m but for the last digit."""
-    road = mf.Profile(np.arange(0.0, 200.0, 0.05), np.zeros(4000))
-    for wavelength in (0.2, 199.95):
-        assert mf.low_passed(road, wavelength=wavelength).steps == mf.prepared(road, low_pass=wavelength).steps
-        mf.high_passed(road, wavelength=wavelength)
-    for wavelength in (0.2 * (1 - 1e-6), 199.95 * (1 + 1e-6)):
-        with pytest.raises(ValueError, match=r"four steps and the length of the profile, 0\.2 and 199\.95 m"):
-            mf.low_passed(road, wavelength=wavelength)
+    """Whose last digit differs from that of four steps, or of the length: stations far out, stations added up."""
+    for x in (100.0 + 0.05 * np.arange(4000), np.arange(-50.0, 149.97, 0.05)):
+        road = mf.Profile(x, 0 * x)
+        for wavelength in (0.2, 199.95):
+            assert mf.low_passed(road, wavelength=wavelength).steps
+            assert mf.high_passed(road, wavelength=wavelength).steps
+        for wavelength in (0.2 * (1 - 1e-6), 199.95 * (1 + 1e-6)):
+            with pytest.raises(ValueError, match=r"four steps and the length of the profile, 0\.2 and 199\.95 m"):
+                mf.low_passed(road, wavelength=wavelength)
 
 
 def test_low_and_high_pass_share_every_wave_between_them():

@@ -169,7 +169,7 @@ def at_offsets(
     # Of a single axis NumPy's rules would say that it is frequency.
     if found.shape not in {(), wanted, (wanted[0], 1), (1, wanted[1]), (1, 1)}:
         raise ValueError(
-            "frf must return one number or an array of shape (offset, frequency), either side of which may be 1, here "
+            "frf must return one number or an array of shape (offset, frequency), either of which may be 1, here "
             f"{wanted}, got {found.shape}"
         )
     rows = np.broadcast_to(found, wanted).astype(complex, copy=False)
