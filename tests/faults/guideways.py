@@ -37,6 +37,7 @@ FAULTS = [
     Fault("spring beside its dashpot", "guideways/relaxing.py", ").in_series(Ratio(", ") + (Ratio("),
     Fault("tension for compression", "guideways/tensioned.py", "{(2, 0): self.force}", "{(2, 0): -self.force}"),
     Fault("buckled track let in", "guideways/critical.py", "if positive.size else", "if False else"),
+    Fault("compressed or not", "guideways/critical.py", "rise * below < above * fall", "False"),
     Fault("layers side by side", "guideways/foundations.py", ".in_series(layer)", " + layer"),
     # What whoever writes a guideway need not write.
     Fault("places across forgotten", "guideways/guideway.py", "    if wide:", "    if False:"),
