@@ -115,10 +115,16 @@ def test_places_across_are_handed_over_where_they_matter():
 
 def test_one_number_is_broadcast_and_one_offset_has_no_axis():
     assert mf.at_offsets(lambda _: 0.0, AHEAD, 7.0, [1.0, 2.0]).shape == (2, 2, 3)
-    found = mf.at_offsets(lambda asked: 1 / (1 + 1j * asked.omega), 0.0, 7.0, [0.0, 1.0])
+    found = mf.at_offsets(lambda asked: 1 / (1 + 1j * asked.omega[None]), 0.0, 7.0, [0.0, 1.0])
     np.testing.assert_allclose(found, [1.0, 0.5 - 0.5j])
     assert mf.at_offsets(lambda asked: asked.ahead, [], 7.0, [0.0, 1.0]).shape == (2, 0)
     assert mf.at_offsets(lambda asked: asked.ahead, [1.0], 7.0, []).shape == (0, 1)
+
+
+@pytest.mark.parametrize("shape", [(3,), (1,), (3, 2), (2, 3), (3, 3, 1)])
+def test_another_shape_is_refused_even_where_counts_agree(shape):
+    with pytest.raises(ValueError, match=r"frf must return one number .* \(offset, frequency\), .* here \(3, 3\)"):
+        mf.at_offsets(lambda _: np.zeros(shape), [0.0, 1.0, 2.0], 7.0, [0.0, 1.0, 2.0])
 
 
 @pytest.mark.parametrize(
@@ -132,7 +138,7 @@ def test_one_number_is_broadcast_and_one_offset_has_no_axis():
         ({"omega": [[1.0]]}, "omega must be finite, one-dimensional"),
         ({"derivative": -1}, "derivative must be a whole number of at least 0"),
         ({"derivative": 1}, "derivative must be 0: this guideway knows deflections only, got 1"),
-        ({"derivative": 3, "derivatives": 2}, "derivative must be at most 2, got 3"),
+        ({"derivative": 3, "known_derivatives": 2}, "derivative must be at most 2, got 3"),
         ({"ahead": np.zeros(2), "across": np.zeros(3)}, "shape mismatch"),
     ],
 )
@@ -144,4 +150,7 @@ def test_what_is_refused(given, message):
 
 def test_derivatives_that_are_known_are_asked_for():
     for known in (2, None):
-        assert mf.at_offsets(lambda asked: asked.derivative, 0.0, 0.0, [1.0], derivative=2, derivatives=known) == 2
+        assert (
+            mf.at_offsets(lambda asked: asked.derivative, 0.0, 0.0, [1.0], derivative=2, known_derivatives=known)
+            == 2
+        )

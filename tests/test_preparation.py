@@ -56,6 +56,29 @@ def test_low_pass_keeps_its_share_and_shifts_nothing(length):
     said(after, "took out waves shorter than 2 m", "both ways")
 
 
+@pytest.mark.parametrize("steps", [2, 3, 5, 8, 40])
+def test_among_the_shortest_waves_both_filters_are_steeper_than_their_formula(steps):
+    """tan(πh/λ) for 1/λ, with λ_c of four steps: tan(πh/λ_c) = 1."""
+    before = mf.Profile(X, np.cos(2 * np.pi * np.arange(X.size) / steps))
+    low, high = (filtered(before, wavelength=4 * STEP) for filtered in (mf.low_passed, mf.high_passed))
+    left = 1 / (1 + np.tan(np.pi / steps) ** 4)
+    middle = slice(X.size // 2, X.size // 2 + 200)
+    for after, share in ((low, left), (high, 1 - left)):
+        assert after.elevation[middle] == pytest.approx(share * before.elevation[middle], abs=1e-9)
+
+
+def test_the_shortest_and_the_longest_wavelength_are_taken():
+    """Whose last digit differs from that of four steps, or of the length: stations far out, stations added up."""
+    for x in (100.0 + 0.05 * np.arange(4000), np.arange(-50.0, 149.97, 0.05)):
+        road = mf.Profile(x, 0 * x)
+        for wavelength in (0.2, 199.95):
+            assert mf.low_passed(road, wavelength=wavelength).steps
+            assert mf.high_passed(road, wavelength=wavelength).steps
+        for wavelength in (0.2 * (1 - 1e-6), 199.95 * (1 + 1e-6)):
+            with pytest.raises(ValueError, match=r"four steps and the length of the profile, 0\.2 and 199\.95 m"):
+                mf.low_passed(road, wavelength=wavelength)
+
+
 def test_low_and_high_pass_share_every_wave_between_them():
     road = mf.Profile(X, np.random.default_rng(4).normal(size=X.size))
     both = mf.low_passed(road, wavelength=5.0).elevation + mf.high_passed(road, wavelength=5.0).elevation

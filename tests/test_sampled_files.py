@@ -104,7 +104,7 @@ def test_impossible_files(changes, message, tmp_path):
     ("name", "content", "message"),
     [
         ("road.csv", b"", r"road.csv: a sampled guideway is read from .mat, .npz, not from .csv"),
-        ("road.npz", b"nonsense", r"road.npz: is not a file of NumPy arrays"),
+        ("road.npz", b"nonsense", r"road.npz: is damaged, or no NumPy file"),
         ("road.mat", b"nonsense", r"road.mat: is no MATLAB file of version 5"),
         ("road.mat", b"MATLAB 7.3", r"road.mat: is a MATLAB 7.3 file; save it with -v7"),
         ("road.npz", None, r"cannot read .*road.npz: No such file"),

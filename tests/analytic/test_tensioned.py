@@ -39,6 +39,34 @@ def test_critical_speed(share):
     assert laid(share * LIMIT).critical_speed == pytest.approx(expected, rel=1e-9)
 
 
+def on_mass(damping):
+    above, below = (mf.Spring(stiffness=stiffness, damping=damping) for stiffness in (2 * STIFFNESS, STIFFNESS))
+    return mf.OnMass(above=above, mass=250.0, below=below)
+
+
+UNDER = on_mass(5.0e4)
+
+
+@pytest.mark.parametrize("left", [0.01, 1e-3, 1e-4])
+def test_critical_speed_about_to_buckle_on_a_mass(left):
+    """√((2 √(k EI) + N)/M) again: so slow a wave moves the mass by 2/3 of the rail, k = 2/3 of the spring below."""
+    limit = LIMIT * np.sqrt(2 / 3)
+    expected = np.sqrt(left * limit / (MASS + UNDER.mass * (2 / 3) ** 2))
+    assert laid(-(1 - left) * limit, UNDER).critical_speed == pytest.approx(expected, rel=2 * left)
+
+
+def test_compression_alone_makes_damping_give_way():
+    """At 0.9 of the buckling force a moving load deflects the track most; under strong damping one at rest."""
+    limit = LIMIT * np.sqrt(2 / 3)
+    slowest = np.sqrt(0.1 * limit / (MASS + UNDER.mass * (2 / 3) ** 2))
+    assert laid(-0.9 * limit, UNDER).critical_speed < 0.9 * slowest
+    stiff = on_mass(5.0e6)
+    for beam in (RAIL, TIMOSHENKO):
+        assert laid(0.0, stiff, beam).critical_speed == mf.track(beam, stiff).critical_speed == np.inf
+        assert laid(1e5, stiff, beam).critical_speed == np.inf
+        assert np.isfinite(laid(-1e5, stiff, beam).critical_speed)
+
+
 def test_without_bending_stiffness_it_is_a_string():
     """Of the page on guideways, in closed form; stiffness of 1e-3 N m² changes the wire by (EI k)^½/T = 2e-5."""
     wire = {"mass": 1.35, "stiffness": 200.0, "damping": 20.0}

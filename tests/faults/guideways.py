@@ -38,10 +38,12 @@ FAULTS = [
     Fault("tension for compression", "guideways/tensioned.py", "{(2, 0): self.force}", "{(2, 0): -self.force}"),
     Fault("buckled track let in", "guideways/critical.py", "if not positive.size:", "if True:"),
     Fault("shortest wave that buckles", "guideways/critical.py", "among)).argmin()", "among)).argmax()"),
+    Fault("compressed or not", "guideways/critical.py", "rise * below < above * fall", "False"),
     Fault("layers side by side", "guideways/foundations.py", ".in_series(layer)", " + layer"),
     # What whoever writes a guideway need not write.
     Fault("places across forgotten", "guideways/guideway.py", "    if wide:", "    if False:"),
     Fault("offset for its mirror", "guideways/guideway.py", "rows[back.ravel()]", "rows[back.ravel()[::-1]]"),
+    Fault("offsets for frequencies", "guideways/guideway.py", "if found.shape not in {", "if False and {"),
     # Plates.
     Fault(
         "place of the source for the offset across",

@@ -94,7 +94,7 @@ FAULTS = [
     ),
     Fault("damage of a negative life", "metrics/fatigue.py", "if not 0 < share <= 1", "if not share <= 1"),
     Fault("impact without the load", "metrics/impact.py", "high = load +", "high ="),
-    Fault("median impact of a random road", "metrics/impact.py", "inv_cdf(0.95)", "inv_cdf(0.5)"),
+    Fault("median impact of a random road", "metrics/impact.py", "inv_cdf(CUSTOMARY / 100)", "inv_cdf(0.5)"),
     Fault("load that hangs divides", "metrics/loads.py", "where=load > 0)", "where=load != 0)"),
     Fault("load that hangs wears", "metrics/loads.py", "max(static[contact], 0.0)", "static[contact]"),
     Fault("points beyond memory", "metrics/loads.py", "(last - first) / spacing * (bytes", "0 * (bytes"),

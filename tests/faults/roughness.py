@@ -178,10 +178,8 @@ FAULTS = [
     Fault("right for left in a grid", "roughness/formats/crg.py", "road.surface_z()[:, ::-1]", "road.surface_z()"),
     Fault("slope and banking left out", "roughness/formats/crg.py", "road.surface_z()[", "road.z["),
     Fault("first path of an ERD file twice", "roughness/formats/erd.py", "values[:, n]", "values[:, 0]"),
-    Fault(
-        "columns for rows", "roughness/formats/numpy_file.py", '"F" if self.by_columns', '"C" if self.by_columns'
-    ),
-    Fault("bombs unpacked", "roughness/formats/numpy_file.py", "> UNPACKING.most(len(data))", "> np.inf"),
+    Fault("columns for rows", "_basics/numpy_file.py", '"F" if header.by_columns', '"C" if header.by_columns'),
+    Fault("bombs unpacked", "_basics/numpy_file.py", "> UNPACKING.most(len(data))", "> np.inf"),
     Fault("sphere for the ellipsoid", "roughness/formats/gpx.py", "6.694_379_990_141e-3", "0.0"),
     Fault("paths between sections", "roughness/files.py", "rights + share * (lefts - rights)", "rights"),
     Fault("formats not told", "roughness/files.py", ".replace(words, instead)", '.replace(words, "")'),

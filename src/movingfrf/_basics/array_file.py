@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from movingfrf._basics import matlab_file
+from movingfrf._basics import matlab_file, numpy_file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,7 +21,7 @@ class Content:
     what : str
         What the arrays make, with its article, for messages.
     largest : int
-        What a file may weigh and unpack to at most [bytes].
+        What a file may weigh at most [bytes]; what it may unpack to, its reader says.
     texts : collection of str
         Names under which texts are read; others are met with an empty list in their place.
     """
@@ -118,12 +117,6 @@ def _read_mat(path: Path, content: Content) -> Arrays:
 
 def _read_npz(path: Path, content: Content) -> Arrays:
     try:
-        # NumPy leaves a file open that it opened itself and could not read.
-        with path.open("rb") as file, zipfile.ZipFile(file) as archive:
-            needed = sum(entry.file_size for entry in archive.infolist())
-        if needed > content.largest:
-            raise ValueError(f"it unpacks to {needed / 2**20:.4g} MiB, too much for {content.what}")
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as found:
-            return {name: found[name] for name in found.files}
-    except (ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError, MemoryError) as error:
-        raise ValueError(f"{path}: is not a file of NumPy arrays: {error}") from None
+        return {name: stored.load() for name, stored in numpy_file.stored_arrays(path.read_bytes()).items()}
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None

@@ -60,6 +60,24 @@ def buckles_at(lossless: Ratio) -> float:
     return float(np.sqrt(among[(np.polyval(above, among) / np.polyval(below, among)).argmin()]))
 
 
+def compressed(lossless: Ratio) -> bool:
+    """Tell whether an undamped guideway is softer to long waves than to a load that is the same everywhere.
+
+    Parameters
+    ----------
+    lossless : Ratio
+        Dynamic stiffness without damping [N/m²]: only even powers of κ and p.
+
+    Returns
+    -------
+    bool
+        Whether the static stiffness falls from κ = 0 on, as under an axial force that no shear layer outweighs.
+    """
+    tables = lossless.above, lossless.below
+    (above, rise), (below, fall) = (np.pad(table[:3:2, 0], (0, 2))[:2] for table in tables)
+    return bool(rise * below < above * fall)
+
+
 def first_stationary_velocity(lossless: Ratio) -> PhaseVelocity:
     """First stationary phase velocity of an undamped guideway, searched branch by branch from long waves on.
 

@@ -94,7 +94,7 @@ def at_offsets(
     source_across: ArrayLike = 0.0,
     derivative: int = 0,
     wide: bool = False,
-    derivatives: int | None = 0,
+    known_derivatives: int | None = 0,
 ) -> ComplexArray:
     """Answer as `Guideway.moving_frf` does, by a function of distinct offsets.
 
@@ -102,8 +102,8 @@ def at_offsets(
     ----------
     frf : callable
         Called once with what is asked for: `ahead`, `across`, `source_across`, shape (offset, 1) [m], `speed`
-        [m/s], `omega`, shape (frequency,) [rad/s], and `derivative`. Returns the moving FRF [m/N/m^derivative] in
-        an array that broadcasts to (offset, frequency).
+        [m/s], `omega`, shape (frequency,) [rad/s], and `derivative`. Returns the moving FRF [m/N/m^derivative] as
+        one number or in an array of shape (offset, frequency), where either side may be 1: the same for all.
     ahead, across, source_across : array_like
         As `Guideway.moving_frf` was given them [m].
     speed : float
@@ -111,11 +111,11 @@ def at_offsets(
     omega : array_like, shape (frequency,)
         Angular frequency in the moving frame [rad/s].
     derivative : int
-        Order of the derivative with respect to x, a whole number of.
+        Order of the derivative with respect to x, a whole number of at least zero.
     wide : bool
         Whether places across make a difference; otherwise `across` and `source_across` of what is asked are zero.
-    derivatives : int, optional
-        Number of derivatives that `frf` knows; None: all.
+    known_derivatives : int, optional
+        Highest derivative that `frf` knows; None: all.
 
     Returns
     -------
@@ -125,8 +125,8 @@ def at_offsets(
     Raises
     ------
     ValueError
-        If an argument is not finite, ω has a positive imaginary part, or the derivative is not a whole number or
-        not known.
+        If an argument is not finite, ω has a positive imaginary part, the derivative is not a whole number or not
+        known, or `frf` returns another shape.
 
     Examples
     --------
@@ -150,8 +150,10 @@ def at_offsets(
         if frequencies.ndim != 1 or not np.isfinite(frequencies).all() or (frequencies.imag > 0).any():
             check.refuse("omega", "must be finite, one-dimensional and have Im ω ≤ 0 [rad/s]")
         derivative = check.whole("derivative", derivative)
-        if derivatives is not None and derivative > derivatives:
-            knows = f"at most {derivatives}" if derivatives else "0: this guideway knows deflections only"
+        if known_derivatives is not None and derivative > known_derivatives:
+            knows = (
+                f"at most {known_derivatives}" if known_derivatives else "0: this guideway knows deflections only"
+            )
             check.refuse("derivative", f"must be {knows}, got {derivative}")
     shape = np.broadcast_shapes(*(place.shape for place in places))
     given = np.stack([np.broadcast_to(place, shape).ravel() for place in places])
@@ -162,8 +164,15 @@ def at_offsets(
         along, back = np.unique(given[0], return_inverse=True)
         distinct = np.stack([along, 0 * along, 0 * along])
     columns = distinct[:, :, None]
-    found = frf(Asked(columns[0], columns[1], columns[2], speed, frequencies, derivative))
-    rows = np.broadcast_to(found, (distinct.shape[1], frequencies.size)).astype(complex, copy=False)
+    wanted = distinct.shape[1], frequencies.size
+    found = np.asarray(frf(Asked(columns[0], columns[1], columns[2], speed, frequencies, derivative)))
+    # Of a single axis NumPy's rules would say that it is frequency.
+    if found.shape not in {(), wanted, (wanted[0], 1), (1, wanted[1]), (1, 1)}:
+        raise ValueError(
+            "frf must return one number or an array of shape (offset, frequency), either of which may be 1, here "
+            f"{wanted}, got {found.shape}"
+        )
+    rows = np.broadcast_to(found, wanted).astype(complex, copy=False)
     placed: ComplexArray = rows[back.ravel()].T.reshape(frequencies.size, *shape)
     return placed
 

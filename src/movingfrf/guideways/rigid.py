@@ -44,5 +44,5 @@ class RigidGuideway:
             across=across,
             source_across=source_across,
             derivative=derivative,
-            derivatives=None,
+            known_derivatives=None,
         )

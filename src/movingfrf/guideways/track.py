@@ -11,7 +11,12 @@ from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf.guideways.beams import Beam
-from movingfrf.guideways.critical import buckles_at, first_stationary_velocity, speed_of_greatest_deflection
+from movingfrf.guideways.critical import (
+    buckles_at,
+    compressed,
+    first_stationary_velocity,
+    speed_of_greatest_deflection,
+)
 from movingfrf.guideways.foundations import Foundation
 from movingfrf.guideways.guideway import Asked, at_offsets
 from movingfrf.guideways.waves import Ratio, residue_sum
@@ -44,12 +49,16 @@ class Track(Remembering):
         On a massless foundation the minimum phase velocity, damping ignored: a load that travels with it keeps
         up with its own waves. A mass in the foundation lets waves of ever shorter length travel ever slower;
         then it is the speed of the greatest steady deflection anywhere along the track, with the track's own
-        damping, up to the first stationary phase velocity.
+        damping, up to the first stationary phase velocity. Where damping is so strong that the deflection is
+        greatest at rest there is none; but if the beam is compressed, it is the first stationary phase velocity:
+        compression slows that wave down, to a standstill where the beam buckles, and damping does not stop it.
         """
-        velocity = first_stationary_velocity(self.stiffness(damped=False))
-        if velocity.unbounded:
-            return speed_of_greatest_deflection(self.stiffness(), velocity.value)
-        return velocity.value
+        lossless = self.stiffness(damped=False)
+        velocity = first_stationary_velocity(lossless)
+        if not velocity.unbounded:
+            return velocity.value
+        speed = speed_of_greatest_deflection(self.stiffness(), velocity.value)
+        return velocity.value if np.isinf(speed) and compressed(lossless) else speed
 
     def moving_frf(
         self,
@@ -107,7 +116,7 @@ class Track(Remembering):
             across=across,
             source_across=source_across,
             derivative=derivative,
-            derivatives=None,
+            known_derivatives=None,
         )
 
     def _frf(self, asked: Asked) -> ComplexArray:

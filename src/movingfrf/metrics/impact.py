@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def impact_factor(result: xr.Dataset, *, percentile: float = 95.0) -> FloatArray:
+CUSTOMARY = 95.0  # percentile [%]
+
+
+def impact_factor(result: xr.Dataset, *, percentile: float = CUSTOMARY) -> FloatArray:
     """Total force that each contact exceeds for a small share of the time only, over its load in steady travel.
 
     Of a Gaussian force the factor is 1 + z s, s the dynamic load coefficient and z = 1.645 for 95 %.
@@ -52,13 +55,13 @@ def impact_factor(result: xr.Dataset, *, percentile: float = 95.0) -> FloatArray
     return np.divide(high, load, out=np.full(load.shape, np.inf), where=load > 0)
 
 
-ENTRY = Entry(
-    "1",
-    OfHistory("impact factor (95 %)", lambda of, n: impact_factor(of.result)[n], "Sweatman 1983"),
-    OfRandom(
-        "impact factor (95 %)",
-        lambda of, n: 1 + NormalDist().inv_cdf(0.95) * of.value("dynamic_load_coefficient", n),
-        "Sweatman 1983",
-        "load",
-    ),
-)
+def _entry(name: str, by: str) -> Entry:
+    high = NormalDist().inv_cdf(CUSTOMARY / 100)
+    return Entry(
+        "1",
+        OfHistory(name, lambda of, n: impact_factor(of.result)[n], by),
+        OfRandom(name, lambda of, n: 1 + high * of.value("dynamic_load_coefficient", n), by, "load"),
+    )
+
+
+ENTRY = _entry(f"impact factor ({CUSTOMARY:g} %)", by="Sweatman 1983")

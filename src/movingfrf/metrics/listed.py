@@ -1,4 +1,8 @@
-"""Every measure, once: unit, source, what it is called of a history and of a random road, and its caption."""
+"""Every measure, once: unit, source, what it is called of a history and of a random road, and its caption.
+
+A measure that has a file of its own brings its entry along, with name and source (`impact`): the way for new
+ones. What is taken from files of several measures (`comfort`, `loads`, `fatigue`) has its entries here.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +21,7 @@ from movingfrf.metrics.loads import road_stress_factor
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sources:
-    """Sources of measures which their names alone do not define."""
+    """Sources of the measures with an entry here which their names alone do not define."""
 
     load: str = "Cebon 1999"  # dynamic load coefficient and wear
     stress: str = "Eisenmann 1975"

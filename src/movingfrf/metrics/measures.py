@@ -26,17 +26,15 @@ def measures(result: xr.Dataset) -> list[Measure]:
     Parameters
     ----------
     result : xarray.Dataset
-        What `simulate` or `moving_loads` returned.
+        The coupled response of a vehicle, from `simulate`, `cdfm`, `sim` or `duhamel`; or that to prescribed
+        loads, from `moving_loads`, `newmark_loads` or `duhamel_loads`.
 
     Returns
     -------
     list of Measure
-        Per contact: static load [N], root mean square and peak of the dynamic force [N], smallest total force
-        [N], dynamic load coefficient (root mean square over static load); static deflection [m], root mean
-        square of the dynamic and peak of the total deflection [m]. Per degree of freedom: root mean square and
-        peak of the acceleration, and its root mean square as weighted by ISO 2631-1, with Wk if it is a
-        translation and We if it is a rotation [m/s² or rad/s²]. Per observation point under prescribed loads: root
-        mean square and peak of the deflection [m].
+        Those that `movingfrf run` reports of contact forces [N], deflections [m] and accelerations, weighted ones
+        too [m/s² or rad/s²]; of prescribed loads those of the deflection at each observation point [m]. Each says
+        its unit and its source; `docs/measures.md` has their definitions.
 
     Raises
     ------
@@ -81,7 +79,7 @@ def assess(
     Parameters
     ----------
     result : xarray.Dataset
-        What `simulate`, `cdfm` or `sim` returned.
+        The coupled response of a vehicle, from `simulate`, `cdfm`, `sim` or `duhamel`.
     contacts : sequence of int, optional
         Numbers of the contacts; all by default.
     dofs : sequence of str, optional
@@ -99,12 +97,10 @@ def assess(
     Returns
     -------
     list of Measure
-        In addition to `measures`: road stress factor, share of the time and longest time without contact [s] of
-        every contact; peak, crest factor, MTVV [m/s²] and VDV [m/s^1.75] of every weighted acceleration (rad for m
-        if it is a rotation); and, unless contacts are chosen, the aggregate fourth-power force on each path that
-        95 % of the road's points bear at most, over that of the static loads. A measure without an answer is nan,
-        and its note says why. Notes also hold the likely reactions to a weighted rms, and whether a limit is
-        exceeded beyond which the rms understates a vibration.
+        Those of `measures` and all others of each contact and degree of freedom and, unless contacts are chosen, of
+        each path, each with its unit and its source; `docs/measures.md` has their definitions. A measure without an
+        answer is nan, and its note says why. Notes also hold the likely reactions to a weighted rms, and whether
+        a limit is exceeded beyond which the rms understates a vibration.
 
     Raises
     ------
@@ -159,12 +155,10 @@ def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[M
     Returns
     -------
     list of Measure
-        Per contact: static force, root mean square and expected peak (its largest value, not the largest
-        magnitude that `measures` calls the dynamic peak) of the dynamic one [N], its crossing rate
-        [1/s] and irregularity; of the total load the dynamic load coefficient, road stress factor, expected
-        largest value [N], how often [1/s] and for which share of the time it would turn tensile; static, root mean
-        square and peak deflection [m] with its crossing rate. Per degree of freedom: root mean square, expected
-        peak, crossing rate and weighted root mean square of the acceleration.
+        Of the contact force, the total load and the deflection of each contact and of the acceleration of each
+        degree of freedom, each with its unit and its source; `docs/random.md` and `docs/measures.md` have their
+        definitions. An expected peak is the largest value, not the largest magnitude that `measures` calls the
+        dynamic peak; a load lifts off where it would turn tensile.
 
     Raises
     ------

@@ -95,7 +95,7 @@ def without_waves(profile: Profile, which: Literal["longer", "shorter"], wavelen
     step = profile.require_even("a filter")
     length = profile.stations[-1] - profile.stations[0]
     with checking() as check:
-        if not 4 * step <= wavelength <= length:
+        if not 4 * step * (1 - SLACK) <= wavelength <= length * (1 + SLACK):
             check.refuse(
                 "wavelength",
                 f"must lie between four steps and the length of the profile, {4 * step:g} and {length:g} m, got "

@@ -9,7 +9,9 @@ from movingfrf.roughness.steps.base import Step, without_waves
 def high_passed(profile: Profile, *, wavelength: float) -> Profile:
     """Take out long waves, without shifting the others: a Butterworth filter of second order, forth and back.
 
-    A wave of length λ keeps 1/(1 + (λ/λ_c)⁴) of its amplitude, half of it at λ = λ_c.
+    A wave of length λ keeps 1/(1 + (λ/λ_c)⁴) of its amplitude, half of it at λ = λ_c. So it is while both are many
+    steps h long; exactly, tan(πh/λ_c)/tan(πh/λ) stands for λ/λ_c: below λ_c a little more is left than that, all of
+    a wave of two steps, above it less.
 
     Parameters
     ----------

@@ -9,8 +9,9 @@ from movingfrf.roughness.steps.base import Step, without_waves
 def low_passed(profile: Profile, *, wavelength: float) -> Profile:
     """Take out short waves, without shifting the others: a Butterworth filter of second order, forth and back.
 
-    A wave of length λ keeps 1/(1 + (λ_c/λ)⁴) of its amplitude, half of it at λ = λ_c; of waves of a few steps less,
-    since the filter keeps nothing of one of two steps.
+    A wave of length λ keeps 1/(1 + (λ_c/λ)⁴) of its amplitude, half of it at λ = λ_c. So it is while both are many
+    steps h long; exactly, tan(πh/λ)/tan(πh/λ_c) stands for λ_c/λ: below λ_c less is left than that, nothing of a
+    wave of two steps, above it a little more.
 
     Parameters
     ----------
