@@ -222,6 +222,27 @@ def test_the_command_steps_a_finite_road(bridge, tmp_path, capsys):
     assert "Critical speed" not in page
 
 
+def test_the_page_of_a_bridge_calls_nothing_steady(bridge, tmp_path):
+    """What is dynamic comes of the bridge; on a stretch cut out of an endless road of the roughness alone."""
+    pages = {}
+    for text in (OSCILLATOR, edited(duration=0.5)):
+        bridge.write_text(text)
+        assert main(["run", str(bridge), "--output", str(tmp_path / "out"), "--method", "cdfm"]) == 0
+        pages[text == OSCILLATOR] = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    for words in (
+        "is what the roughness adds",
+        "about which they vary",
+        "the sag in steady travel",
+        "about the steady state",
+        "over a rough road",
+    ):
+        assert words in pages[False]
+        assert words not in pages[True]
+    for words in ("over a finite road, whose surface rises and falls by 4", "a beginning and no mean"):
+        assert words in pages[True]
+        assert words not in pages[False]
+
+
 def test_the_page_of_loads_says_how_they_were_stepped(tmp_path):
     file = tmp_path / "force.toml"
     file.write_text(CONSTANT)
