@@ -288,6 +288,17 @@ def test_the_page_of_a_bridge_calls_nothing_steady(bridge, tmp_path):
         assert words not in pages[False]
 
 
+def test_the_spectrum_of_a_road_that_is_next_to_flat_is_left_out(bridge, tmp_path):
+    """Of 1 µm over the length of the bridge nothing reaches the lowest class line; of 2 mm over 5 m it does."""
+    flat = OSCILLATOR.replace("2e-3", "1e-6").replace("wavelength = 5.0", "wavelength = 25.0")
+    for text, there in ((flat, False), (OSCILLATOR, True)):
+        bridge.write_text(text)
+        assert main(["run", str(bridge), "--output", str(tmp_path / "out"), "--method", "cdfm"]) == 0
+        page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+        assert ("ISO 8608 classes" in page, "there is content over" in page) == (there, there)
+        assert ("so none is drawn" in page) != there
+
+
 def test_the_page_of_loads_says_how_they_were_stepped(tmp_path):
     file = tmp_path / "force.toml"
     file.write_text(CONSTANT)

@@ -117,12 +117,20 @@ def is_rough(result: xr.Dataset) -> bool:
 
 
 def _roughness_figure(result: xr.Dataset) -> Illustration:
+    elevation = "What the foremost contact of each path rolls over: elevation over distance"
+    if not any(plots.spectrum_in_sight(result, contact)[0].size for contact in foremost(result)):
+        figure = blank(SIZE.single)
+        legend_above(plots.roughness(result, figure.subplots()))
+        caption = (
+            f"{elevation}. The road is next to flat, or the record too short for a spectrum, so none is drawn."
+        )
+        return illustrated("road", "Roughness", caption, figure)
     figure = blank(SIZE.stacked + SIZE.single + 0.9)
     above, below = figure.subplots(2, 1, height_ratios=(SIZE.stacked, SIZE.single))
     legend_above(plots.roughness(result, above))
     legend_above(plots.roughness_spectrum(result, below))
     caption = (
-        "What the foremost contact of each path rolls over: elevation over distance, and its spectrum among the "
+        f"{elevation}, and its spectrum among the "
         "centre lines of the ISO 8608 classes A (smooth) to H (rough). " + _class_words(result)
     )
     return illustrated("road", "Roughness", caption, figure)
