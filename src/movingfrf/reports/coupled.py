@@ -32,7 +32,7 @@ def coupled_summary(result: xr.Dataset) -> str:
     contacts, dofs = result.sizes["contact"], result.sizes["dof"]
     surface = "rough road" if is_rough(result) else "smooth road"
     if stands_still(result):
-        varies = number(1e3 * float(np.ptp(result.roughness.values, axis=0).max()))
+        varies = f"{1e3 * float(np.ptp(result.roughness.values, axis=0).max()):.3g}"
         surface = f"finite road, whose surface rises and falls by {varies} mm"
     weight = number(1e-3 * float(result.static_load.values.sum()))
     return (
