@@ -14,11 +14,14 @@ from scipy.integrate import solve_ivp
 
 import movingfrf as mf
 from movingfrf.commands.main import main
+from movingfrf.reports.figures import blank
+from movingfrf.reports.result import render as write_page
+from movingfrf.scenarios.description import described
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.studies.comparison.convergence import converged, quantities
 from movingfrf.studies.comparison.files import convergence_as_json
 from movingfrf.studies.comparison.methods import FOR_LOADS, FOR_VEHICLE, Case, chosen
-from movingfrf.studies.comparison.page import render
+from movingfrf.studies.comparison.page import _error_over_time, render
 from tests.stepping.plate_parts import TRACK, WIDTH
 from tests.test_scenario import LOADS, edited
 
@@ -183,6 +186,48 @@ def test_the_weight_travels_as_long_as_a_finite_road_has_room():
         parse_scenario(off).run(method="cdfm")
 
 
+def test_who_writes_a_scenario_can_let_the_weight_settle():
+    text = OSCILLATOR.replace('ends = "pinned"', 'ends = "absorbing"').replace(
+        "stiffness = 1.0}", "stiffness = 1e7}"
+    )
+    text = text.replace("last = 25.0", "last = 75.0").replace("[run]", "[run]\nstart = 13.3")
+    with pytest.warns(UserWarning, match="a scenario a finite road that reaches further back, or a later start"):
+        parse_scenario(text).run(method="cdfm")
+
+
+def travelling():
+    """Give the journey of the usual scenario, on a finite road that travels along."""
+    scenario = parse_scenario(edited(duration=0.5))
+    road = mf.finite_track(
+        scenario.guideway, first=-25.0, last=25.0, element=0.25, ends="absorbing", absorbing=10.0, travels=True
+    )
+    return replace(scenario, case=replace(scenario.case, guideway=road))
+
+
+def test_a_road_that_travels_along_is_the_same_everywhere():
+    scenario = travelling()
+    result = scenario.run(method="cdfm")
+    assert result.attrs["superposed"] == 1
+    assert (
+        apart(result.contact_force.values, parse_scenario(edited(duration=0.5)).run().contact_force.values) < 2e-3
+    )
+    together = mf.cdfm(
+        scenario.guideway,
+        scenario.case.vehicle,
+        scenario.case.road.profile,
+        speed=scenario.journey.speed,
+        duration=0.5,
+        time_step=scenario.journey.time_step,
+    )
+    moved = quantities(result, scenario)["deflection"]
+    assert np.allclose(moved, result.deflection.values - result.static_deflection.values)
+    pages = [write_page(one, guideway=None) for one in (result, together)]
+    for words in ("not the same everywhere", "differently everywhere"):
+        assert all(words not in page for page in pages)
+    assert "not the same" not in str(described(scenario))
+    assert "not the same" not in render(mf.compare(scenario, ["cdfm"], curve=False, memory=False, runs=1))
+
+
 @pytest.mark.parametrize(
     ("text", "method", "message"),
     [
@@ -242,6 +287,38 @@ def test_the_command_steps_a_finite_road(bridge, tmp_path, capsys):
     assert "Critical speed" not in page
 
 
+def test_the_page_of_a_bridge_calls_nothing_steady(bridge, tmp_path):
+    """What is dynamic comes of the bridge; on a stretch cut out of an endless road of the roughness alone."""
+    pages = {}
+    for text in (OSCILLATOR, edited(duration=0.5)):
+        bridge.write_text(text)
+        assert main(["run", str(bridge), "--output", str(tmp_path / "out"), "--method", "cdfm"]) == 0
+        pages[text == OSCILLATOR] = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    for words in (
+        "is what the roughness adds",
+        "about which they vary",
+        "the sag in steady travel",
+        "about the steady state",
+        "over a rough road",
+    ):
+        assert words in pages[False]
+        assert words not in pages[True]
+    for words in ("over a finite road, whose surface rises and falls by 4", "a beginning and no mean"):
+        assert words in pages[True]
+        assert words not in pages[False]
+
+
+def test_the_spectrum_of_a_road_that_is_next_to_flat_is_left_out(bridge, tmp_path):
+    """Of 1 µm over the length of the bridge nothing reaches the lowest class line; of 2 mm over 5 m it does."""
+    flat = OSCILLATOR.replace("2e-3", "1e-6").replace("wavelength = 5.0", "wavelength = 25.0")
+    for text, there in ((flat, False), (OSCILLATOR, True)):
+        bridge.write_text(text)
+        assert main(["run", str(bridge), "--output", str(tmp_path / "out"), "--method", "cdfm"]) == 0
+        page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+        assert ("ISO 8608 classes" in page, "there is content over" in page) == (there, there)
+        assert ("so none is drawn" in page) != there
+
+
 def test_the_page_of_loads_says_how_they_were_stepped(tmp_path):
     file = tmp_path / "force.toml"
     file.write_text(CONSTANT)
@@ -266,6 +343,21 @@ def test_a_finite_road_is_compared_with_itself(bridge, tmp_path, capsys):
     page = (output / "report.html").read_text(encoding="utf-8")
     for words in ("on the same road", "halving step and elements", "the weight is always stepped along"):
         assert words in page
+
+
+def test_the_page_of_a_compared_bridge_speaks_of_nothing_else():
+    found = mf.compare(parse_scenario(OSCILLATOR), memory=False, runs=1)
+    page = render(found)
+    for words in ("dashed lines", "struck road", "truncation", "static sag", "wheel", "a rough road"):
+        assert words not in page
+    for words in ("limits it: the elements.", "judged by the whole deflection and by the vehicle acceleration"):
+        assert words in page
+    # Times within a decade, between two powers of ten, are to be read all the same.
+    near = [point._replace(seconds=2e-3 * (1 + n / len(found.curve))) for n, point in enumerate(found.curve)]
+    ax = blank(3.0).subplots()
+    _error_over_time(replace(found, curve=near), "deflection", ax, targets=False)
+    ax.figure.draw_without_rendering()
+    assert [label for label in ax.get_xticklabels(which="minor") if label.get_text()]
 
 
 def test_what_counts_as_static_on_a_finite_road_makes_no_difference():

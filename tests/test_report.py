@@ -194,7 +194,7 @@ def test_roughness_is_fitted_where_it_has_content():
 def test_flat_road_and_a_record_of_two_samples():
     result = drive(rough=False, duration=2e-3)
     page = render(result, guideway=mf.RigidGuideway())
-    assert "no class is fitted: the profile is level" in page
+    assert "next to flat, or the record too short for a spectrum, so none is drawn" in page
     assert "The road is rigid" in page
     assert_ids_unique_and_defined(page)
 

@@ -38,9 +38,12 @@ FAULTS = [
     Fault(
         "weight of its own on a bridge",
         "scenarios/stepped.py",
-        "superposed=superposed and not isinstance(guideway, FiniteGuideway)",
+        "superposed=superposed and not stands_still(guideway)",
         "superposed=superposed",
     ),
+    Fault("bridge called steady", "reports/ways.py", 'and not attrs["superposed"]', 'and attrs["superposed"]'),
+    Fault("times without numbers", "studies/comparison/page.py", 'f"{tick:g}" if free else ""', '""'),
+    Fault("empty spectrum drawn", "reports/plots.py", "> SPECTRUM_STYLE.road_floor).any()", "> 0).any()"),
     Fault("run-in off the road", "scenarios/stepped.py", "max(0.0, math.floor(behind", "max(0.0, math.ceil(behind"),
     Fault("no room to run in", "scenarios/stepped.py", "journey.start - run_in * journey.speed", "journey.start"),
     # Profiles from files.

@@ -279,4 +279,14 @@ ACCELERATIONS = Table(
 TABLES = (FORCES, DEFLECTIONS, WEAR, ACCELERATIONS)
 
 CAPTIONS = {quantity: words for table in TABLES for quantity, words in table.captions.items()}
+# On a road that is not the same everywhere, a bridge for one, nothing is steady.
+FINITE_CAPTIONS = CAPTIONS | {
+    "force": "Contact forces. The dynamic part is what comes, of the road and of its roughness, on top of the "
+    "static level, that at the beginning of the record; the dynamic load coefficient is its rms over the "
+    "static force.",
+    "deflection": "Deflections of the road under the contacts, positive down. The static one is that at the "
+    "beginning of the record, the dynamic rms is about it.",
+    "acceleration": "Accelerations, as they are and as people feel them: weighted with Wk of ISO 2631-1.",
+    "angular acceleration": "Angular accelerations, as they are and weighted with We of ISO 2631-1.",
+}
 RANDOM_CAPTIONS = {quantity: words for table in TABLES for quantity, words in table.random_captions.items()}

@@ -31,6 +31,10 @@ class SpectrumStyle:
     variance: float = 0.9999  # share of it that the frequency axis shows [a convention, which captions state]
     least_end: float = 40.0  # end of a frequency axis at the earliest, if the record goes as far [Hz; a convention]
     opacity: float = 0.6  # of a spectrum under its fit [a convention]
+    # Of a road's elevation: spatial frequencies [cycle/m; a convention], and the least density, a thirtieth of that
+    # of class A at the upper end [m³; a convention].
+    road_ends: tuple[float, float] = (0.01, 10.0)
+    road_floor: float = 1.6e-9 / 30
 
 
 SPECTRUM_STYLE = SpectrumStyle()

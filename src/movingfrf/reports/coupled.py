@@ -10,7 +10,7 @@ from movingfrf._basics import wording
 from movingfrf._basics.welch import FLAT
 from movingfrf._basics.wording import number, plain
 from movingfrf.guideways.guideway import Guideway
-from movingfrf.metrics.listed import CAPTIONS
+from movingfrf.metrics.listed import CAPTIONS, FINITE_CAPTIONS
 from movingfrf.metrics.measures import measures
 from movingfrf.metrics.spectra import elevation_spectrum
 from movingfrf.reports import plots
@@ -19,7 +19,7 @@ from movingfrf.reports.curves import contact_curves, distinct, foremost, left_ou
 from movingfrf.reports.figures import SIZE, Illustration, blank, illustrated, panels
 from movingfrf.reports.frf import frf_figures
 from movingfrf.reports.tables import Table, measure_tables
-from movingfrf.reports.ways import is_stepped, stepped_road, way
+from movingfrf.reports.ways import is_stepped, stands_still, stepped_road, way
 from movingfrf.results.labels import duration_of, speed_in_words
 from movingfrf.roughness.fitting import fit_iso
 
@@ -31,6 +31,9 @@ def coupled_summary(result: xr.Dataset) -> str:
     """Say in a sentence what was computed."""
     contacts, dofs = result.sizes["contact"], result.sizes["dof"]
     surface = "rough road" if is_rough(result) else "smooth road"
+    if stands_still(result):
+        varies = f"{1e3 * float(np.ptp(result.roughness.values, axis=0).max()):.3g}"
+        surface = f"finite road, whose surface rises and falls by {varies} mm"
     weight = number(1e-3 * float(result.static_load.values.sum()))
     return (
         f"A vehicle of {weight} kN with {wording.count(contacts, 'contact')} and "
@@ -77,8 +80,13 @@ def _stepped(result: xr.Dataset) -> list[str]:
         + (
             ". Since the road is the same everywhere, what the roughness adds is stepped on its own afterwards."
             if result.attrs["superposed"]
-            else ", and is stepped on together with what the roughness adds. Static levels are those at the end of "
-            "that: on a bridge, which gives way differently everywhere, they are a beginning and no mean."
+            else ", and is stepped on together with what the roughness adds."
+        )
+        + (
+            " Static levels are those at the end of that: on a bridge, which gives way differently everywhere, "
+            "they are a beginning and no mean."
+            if stands_still(result)
+            else ""
         ),
         "In every step the contact forces solve F = k (z − w + r) + c (ż − ẇ − v ∂w/∂x + ṙ), with z the vehicle, w "
         "the road and r the elevation at the contact.",
@@ -87,7 +95,7 @@ def _stepped(result: xr.Dataset) -> list[str]:
 
 def coupled_tables(result: xr.Dataset) -> list[Table]:
     """Put the measures of the response into tables."""
-    return measure_tables(result, measures(result), CAPTIONS)
+    return measure_tables(result, measures(result), FINITE_CAPTIONS if stands_still(result) else CAPTIONS)
 
 
 def of_coupled(result: xr.Dataset, guideway: Guideway | None) -> list[Illustration]:
@@ -109,12 +117,20 @@ def is_rough(result: xr.Dataset) -> bool:
 
 
 def _roughness_figure(result: xr.Dataset) -> Illustration:
+    elevation = "What the foremost contact of each path rolls over: elevation over distance"
+    if not any(plots.spectrum_in_sight(result, contact)[0].size for contact in foremost(result)):
+        figure = blank(SIZE.single)
+        legend_above(plots.roughness(result, figure.subplots()))
+        caption = (
+            f"{elevation}. The road is next to flat, or the record too short for a spectrum, so none is drawn."
+        )
+        return illustrated("road", "Roughness", caption, figure)
     figure = blank(SIZE.stacked + SIZE.single + 0.9)
     above, below = figure.subplots(2, 1, height_ratios=(SIZE.stacked, SIZE.single))
     legend_above(plots.roughness(result, above))
     legend_above(plots.roughness_spectrum(result, below))
     caption = (
-        "What the foremost contact of each path rolls over: elevation over distance, and its spectrum among the "
+        f"{elevation}, and its spectrum among the "
         "centre lines of the ISO 8608 classes A (smooth) to H (rough). " + _class_words(result)
     )
     return illustrated("road", "Roughness", caption, figure)
@@ -158,7 +174,8 @@ def _forces_figure(result: xr.Dataset) -> Illustration:
         [curve.name for curve in curves],
     )
     peak, instant, contact = _peak_force(result)
-    words = "Total contact forces; dashed, the static level about which they vary. "
+    level = "level at the beginning" if stands_still(result) else "static level about which they vary"
+    words = f"Total contact forces; dashed, the {level}. "
     words += (
         f"The largest dynamic force, {number(1e-3 * peak)} kN, acts under contact {contact} at {instant:.6g} s. "
         "Contact is lost where a force falls below zero."
@@ -195,7 +212,7 @@ def _zoom_figures(result: xr.Dataset, window: float = 1.5) -> list[Illustration]
         f"The {window:g} s around the largest dynamic force ({number(1e-3 * peak)} kN under contact {contact}), "
         "there and under the nearest contact of the same path. They meet the same spot one after the other: look "
         "for the same event with its delay. "
-        "Dashed: the static levels."
+        f"Dashed: the {'levels at the beginning' if stands_still(result) else 'static levels'}."
     )
     return [illustrated("zoom", "Contact forces around the peak", caption, figure)]
 
@@ -232,9 +249,10 @@ def _deflections_figure(result: xr.Dataset) -> Illustration:
     deflection = result.deflection.values
     contact = int(np.argmax([column.max() for column in deflection.T]))
     place = int(deflection[:, contact].argmax())
+    sag = "that at the beginning" if stands_still(result) else "the sag in steady travel on the smooth road"
     caption = (
-        "Deflection of the road under each contact, positive down; dashed, the sag in steady travel on the smooth "
-        f"road. The largest, {number(1e3 * float(deflection[place, contact]))} mm, occurs under contact {contact} "
+        f"Deflection of the road under each contact, positive down; dashed, {sag}. The largest, "
+        f"{number(1e3 * float(deflection[place, contact]))} mm, occurs under contact {contact} "
         f"at {result.time.values[place]:.6g} s."
     )
     caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")

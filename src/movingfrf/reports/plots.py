@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from movingfrf._basics.arrays import FloatArray
 from movingfrf.metrics.spectra import elevation_spectrum
 from movingfrf.reports.axes import (
     SPECTRUM_STYLE,
@@ -265,6 +266,28 @@ def roughness(result: xr.Dataset, ax: Axes) -> Axes:
     return ax
 
 
+def spectrum_in_sight(result: xr.Dataset, contact: int) -> tuple[FloatArray, FloatArray]:
+    """Give the part of the spectrum of the elevation under a contact that `roughness_spectrum` has room for.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What `simulate` returned.
+    contact : int
+        Number of the contact.
+
+    Returns
+    -------
+    spatial_frequency, density : ndarray
+        In cycle/m and m³; empty on a flat road, where the record is too short, or all lies below the classes.
+    """
+    n, density = elevation_spectrum(result, contact)
+    low, high = SPECTRUM_STYLE.road_ends
+    inside = (n >= low) & (n <= high) & (density > 0)
+    inside &= bool((density[inside] > SPECTRUM_STYLE.road_floor).any())
+    return n[inside], density[inside]
+
+
 def roughness_spectrum(result: xr.Dataset, ax: Axes) -> Axes:
     """Draw the spectrum of the road's elevation [m³] over spatial frequency [cycle/m] among the ISO 8608 classes.
 
@@ -281,24 +304,22 @@ def roughness_spectrum(result: xr.Dataset, ax: Axes) -> Axes:
         `ax`; the class lines are the geometric centres of the classes. A fit is drawn over the frequencies that it
         was made from, unless the result says which spectrum its road was made from.
     """
-    low, high = 0.01, 10.0
-    ends = np.array([low, high])
-    lowest, highest = IsoRoad.of_class("A").density(ends)[1], IsoRoad.of_class("H").density(ends)[1]
+    ends = np.array(SPECTRUM_STYLE.road_ends)
+    highest = IsoRoad.of_class("H").density(ends)[1]
     for curve in distinct(contact_curves(result, foremost(result)), result.roughness.values):
-        n, density = elevation_spectrum(result, curve.column)
-        inside = (n >= low) & (n <= high) & (density > 0)
-        if not inside.any():
+        n, density = spectrum_in_sight(result, curve.column)
+        if not n.size:
             continue
-        n, density = decimated(n[inside], density[inside], logarithmic=True)
+        n, density = decimated(n, density, logarithmic=True)
         ax.plot(n, density, color=curve.colour, alpha=SPECTRUM_STYLE.opacity, label=f"under {curve.name}")
         highest = max(highest, float(density.max()))
         if "spectrum" not in result.attrs:
             draw_fit(fit_iso(*elevation_spectrum(result, curve.column)), curve.colour, ax)
-    ax.set(xscale="log", yscale="log", xlim=(low, high), ylim=(lowest / 30, 5 * highest))
+    ax.set(xscale="log", yscale="log", xlim=SPECTRUM_STYLE.road_ends, ylim=(SPECTRUM_STYLE.road_floor, 5 * highest))
     ax.minorticks_off()
     draw_classes(ax, ends)
     if not ax.get_legend_handles_labels()[0]:
-        note(ax, "the road is flat, or the record too short for a spectrum")
+        note(ax, "the road is next to flat, or the record too short for a spectrum")
     ax.set_xlabel("spatial frequency [cycle/m]")
     ax.set_ylabel("spectral density $G_d$ [m³]")
     return ax

@@ -57,6 +57,12 @@ def is_stepped(result: xr.Dataset) -> bool:
     return "road_dofs" in result.attrs
 
 
+def stands_still(result: xr.Dataset) -> bool:
+    """Tell whether a vehicle was stepped along a road that need not be the same everywhere."""
+    attrs = result.attrs
+    return is_stepped(result) and not attrs["road_travels"] and not attrs["superposed"]
+
+
 def stepped_road(result: xr.Dataset) -> str:
     """Say what road a result was stepped on.
 

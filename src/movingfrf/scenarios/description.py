@@ -134,9 +134,10 @@ def _guideway(scenario: Scenario) -> list[tuple[str, str]]:
 
 def _finite(road: FiniteGuideway) -> list[tuple[str, str]]:
     first, last = road.interval
+    varies = "which travels along" if road.travels else "not the same everywhere"
     lines = [
-        ("kind", "finite road, not the same everywhere: no moving FRF, no critical speed"),
-        ("length", f"{last - first:g} m, from {first:g} m to {last:g} m" + (", travels along" * road.travels)),
+        ("kind", f"finite road, {varies}: no moving FRF, no critical speed"),
+        ("length", f"{last - first:g} m, from {first:g} m to {last:g} m"),
     ]
     if road.width:
         lines.append(("width", f"{road.width:g} m"))

@@ -101,6 +101,22 @@ def elements(guideway: Guideway | FiniteGuideway) -> list[float]:
     return [_rounded(share * length) for share in DISCRETISATION.elements]
 
 
+def stands_still(guideway: Guideway | FiniteGuideway) -> bool:
+    """Tell whether a road need not be the same everywhere: a finite one that does not travel along.
+
+    Parameters
+    ----------
+    guideway : Guideway or FiniteGuideway
+        The road.
+
+    Returns
+    -------
+    bool
+        Whether it stands still.
+    """
+    return isinstance(guideway, FiniteGuideway) and not guideway.travels
+
+
 def require_endless(guideway: Guideway | FiniteGuideway, *, instead: str) -> Guideway:
     """Give a guideway that has moving FRFs.
 
@@ -123,8 +139,8 @@ def require_endless(guideway: Guideway | FiniteGuideway, *, instead: str) -> Gui
     """
     if isinstance(guideway, FiniteGuideway):
         raise ValueError(
-            "guideway is a finite road, which is not the same everywhere and so has no moving FRF; step it through "
-            f"time: `movingfrf run FILE --method {instead}`, or run(method={instead!r}) in Python"
+            "guideway is a finite road, which has no moving FRF; step it through time: "
+            f" `movingfrf run FILE --method {instead}`, or run(method={instead!r}) in Python"
         )
     return guideway
 
@@ -202,8 +218,8 @@ def coupled(
     division : Division
         Elements of the road.
     superposed : bool
-        Whether the weight travels in a run of its own where the road is endless and so the same everywhere; along a
-        finite road it is always stepped along.
+        Whether the weight travels in a run of its own where the road is the same everywhere, endless or travelling
+        along; along another it is always stepped along.
     run_in : float, optional
         Time for which the weight travels before the record [s]; None: what `run_in_of` finds.
     iteration : Iteration
@@ -222,7 +238,7 @@ def coupled(
         journey,
         (stretch(guideway, vehicle.positions, journey, division, before), vehicle, profile),
         iteration=iteration,
-        superposed=superposed and not isinstance(guideway, FiniteGuideway),
+        superposed=superposed and not stands_still(guideway),
         run_in=before,
         progress=progress,
     )

@@ -523,6 +523,7 @@ def _settling(deflection: FloatArray, passage: int, time_step: float) -> list[fi
         find.Finding(
             "not_settled",
             f"the deflection under the vehicle's weight still changes by {change:.1e} from one element to the next "
-            f"after a run-in of {time_step * (len(deflection) - 1):.3g} s; a longer run_in would let it settle",
+            f"after a run-in of {time_step * (len(deflection) - 1):.3g} s; a longer run-in "
+            "(run_in) would let it settle: in a scenario a finite road that reaches further back, or a later start",
         )
     ]

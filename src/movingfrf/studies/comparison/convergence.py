@@ -14,7 +14,7 @@ from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent, under
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.scenarios.scenario import Drive, Scenario
-from movingfrf.scenarios.stepped import DISCRETISATION, elements
+from movingfrf.scenarios.stepped import DISCRETISATION, elements, stands_still
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.studies.comparison.methods import Case, newmark, stepped
 
@@ -73,7 +73,7 @@ def quantities(result: xr.Dataset, scenario: Scenario) -> Quantities:
     -------
     dict of str to ndarray
         Dynamic contact force [N], deflection without the sag [m], acceleration of the degrees of freedom that touch
-        the road [m/s²]; the deflection alone under prescribed loads. On a finite road, on which nothing is steady,
+        the road [m/s²]; the deflection alone under prescribed loads. Where nothing is steady, on a bridge,
         the contact force is that without the weight, and the deflection is the whole.
     """
     if not isinstance(scenario.case, Drive):
@@ -81,7 +81,7 @@ def quantities(result: xr.Dataset, scenario: Scenario) -> Quantities:
     vehicle = scenario.case.vehicle
     wheels = np.flatnonzero(np.abs(np.asarray(vehicle.contact_map)).any(axis=0))
     force, deflection = result.contact_force.values, result.deflection.values
-    if isinstance(scenario.guideway, FiniteGuideway):
+    if stands_still(scenario.guideway):
         force = force + (result.static_load.values - vehicle.static_loads)
     else:
         deflection = deflection - result.static_deflection.values

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from movingfrf._basics.version import VERSION
 from movingfrf._basics.wording import number, plain
 from movingfrf.reports.axes import legend_above
@@ -14,6 +16,7 @@ from movingfrf.reports.figures import SIZE, Illustration, blank, drawing, illust
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Column, Row, Setting, Table
 from movingfrf.scenarios.scenario import Drive
+from movingfrf.scenarios.stepped import stands_still
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.marching import numba_is_there
 from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
@@ -83,20 +86,28 @@ def tables(comparison: Comparison) -> list[Table]:
     ]
 
 
-def _name(quantity: str) -> str:
+def _name(comparison: Comparison, quantity: str) -> str:
+    """Call a quantity by its name; where everything that moves touches the road there are no wheels."""
+    case = comparison.scenario.case
+    if quantity == "wheel_acceleration" and isinstance(case, Drive):
+        touching = np.asarray(case.vehicle.contact_map).any(axis=0)
+        return "vehicle acceleration" if touching.all() else QUANTITIES[quantity]
     return QUANTITIES[quantity]
+
+
+def _main(comparison: Comparison) -> str:
+    return _name(comparison, comparison.main_quantity)
 
 
 def _summary(comparison: Comparison) -> str:
     journey = comparison.scenario.journey
-    what = (
-        "a vehicle on a rough road" if isinstance(comparison.scenario.case, Drive) else "prescribed loads on a road"
-    )
+    road = "a finite road" if stands_still(comparison.scenario.guideway) else "a rough road"
+    what = f"a vehicle on {road}" if isinstance(comparison.scenario.case, Drive) else "prescribed loads on a road"
     words = (
         f"One case, {what} at {plain(journey.speed)} m/s for {plain(journey.duration)} s, solved by "
         f"{len(comparison.rows)} methods in one process on one thread. Errors are those of the "
-        f"{_name(comparison.main_quantity)}, unless said otherwise, relative to a converged answer from the time "
-        "domain."
+        f"{_main(comparison)}, unless said otherwise, relative to a converged answer from "
+        "the time domain."
     )
     for target in comparison.equal_error:
         found = {name: ratio for name, ratio in ratios(comparison, target).items() if math.isfinite(ratio)}
@@ -196,8 +207,8 @@ def _time_table(comparison: Comparison) -> Table:
 def _error_table(comparison: Comparison) -> Table:
     names = list(comparison.reference.quantities)
     columns = [
-        *(Column(f"{_name(name)}, relative L2", "") for name in names),
-        *(Column(f"{_name(name)}, largest", "") for name in names),
+        *(Column(f"{_name(comparison, name)}, relative L2", "") for name in names),
+        *(Column(f"{_name(comparison, name)}, largest", "") for name in names),
     ]
     rows = []
     for row in comparison.rows:
@@ -234,8 +245,8 @@ def _equal_error_table(comparison: Comparison) -> Table:
                 row.append(_cell(over[name], _three))
     colours = _colours(comparison)
     return Table(
-        f"Time, set-up included, to equal error in {_name(comparison.main_quantity)}, read from the figure: the "
-        "least on a line of the method.",
+        f"Time, set-up included, to equal error in {_main(comparison)}, read from the figure: "
+        "the least on a line of the method.",
         "method",
         columns,
         [Row(name, row, colours[name]) for name, row in cells.items()],
@@ -250,7 +261,7 @@ def _reference_table(comparison: Comparison) -> Table:
         f"{refined(comparison.scenario.guideway)}{longer}.",
         "quantity",
         [Column("movement", "")],
-        [Row(_name(name), [number(value, 2)]) for name, value in movement.items()],
+        [Row(_name(comparison, name), [number(value, 2)]) for name, value in movement.items()],
     )
 
 
@@ -277,30 +288,51 @@ def _figures(comparison: Comparison) -> list[Illustration]:
     found = [
         illustrated(
             "error-time",
-            f"Error in {_name(main)} over time",
-            "Each point is one run, each line one method over a range of steps; dashed lines with circles have "
-            "elements of twice the length of full lines with squares. Left and down is better. Where a line "
-            "crosses a dotted one the times at equal error are read; where a line turns flat something other than "
-            "the step limits it: the elements, the 40 m of struck road, or the truncation.",
+            f"Error in {_name(comparison, main)} over time",
+            _reading(comparison),
             figure,
         )
     ]
     if others:
+        judged = (
+            "whole deflection"
+            if stands_still(comparison.scenario.guideway)
+            else "deflection without the static sag"
+        )
         figure = blank(SIZE.single + 0.8)
         axes = figure.subplots(1, len(others), sharex=True, squeeze=False)[0]
         for ax, name in zip(axes, others, strict=True):
             _error_over_time(comparison, name, ax, targets=False)
-            ax.set_title(_name(name), fontweight="bold")
+            ax.set_title(_name(comparison, name), fontweight="bold")
         found.append(
             illustrated(
                 "error-time-others",
                 "Errors in the other quantities over time",
-                "The same runs and colours, judged by the deflection without the static sag and by the "
-                "acceleration of the wheels.",
+                f"The same runs and colours, judged by the {judged} and by the {_name(comparison, others[-1])}.",
                 figure,
             )
         )
     return found
+
+
+def _reading(comparison: Comparison) -> str:
+    """Say how to read the figure of errors over time, of what is in it."""
+    methods = [(FOR_VEHICLE | FOR_LOADS)[name] for name in _methods(comparison)]
+    words = "Each point is one run, each line one method over a range of steps"
+    lines = [_lines([point for point in comparison.curve if point.method == name]) for name in _methods(comparison)]
+    if max(map(len, lines)) > 1:
+        words += "; dashed lines with circles have elements of twice the length of full lines with squares"
+    words += ". Left and down is better. Where a line crosses a dotted one the times at equal error are read"
+    limits = {
+        "the elements": any(m.divides or m.strikes for m in methods)
+        and not math.isnan(comparison.reference.finest_element),
+        "the 40 m of struck road": any(m.strikes for m in methods),
+        "the truncation": any(name.startswith("moving-frf") for name in _methods(comparison)),
+    }
+    there = [limit for limit, is_there in limits.items() if is_there]
+    if not there:
+        return f"{words}."
+    return f"{words}; where a line turns flat something other than the step limits it: {', or '.join(there)}."
 
 
 def _error_over_time(comparison: Comparison, quantity: str, ax: Axes, *, targets: bool) -> Axes:
@@ -323,8 +355,24 @@ def _error_over_time(comparison: Comparison, quantity: str, ax: Axes, *, targets
                 label=name if line is lines[-1] else None,
             )
     ax.set(xscale="log", yscale="log", xlabel="time, set-up included [s]", ylabel="relative L2 error")
-    ax.xaxis.set_minor_formatter("")
+    _label_within_a_decade(ax)
     return ax
+
+
+def _label_within_a_decade(ax: Axes, apart: float = 0.2) -> None:
+    """Label ticks between powers of ten, so far apart as a share of the axis, where none may be in sight."""
+    low, high = ax.get_xlim()
+    if high >= 10 * low:
+        ax.xaxis.set_minor_formatter("")
+        return
+    inside = [tick for tick in ax.get_xticks(minor=True).tolist() if low <= tick <= high]
+    taken = [tick for tick in ax.get_xticks().tolist() if low <= tick <= high]
+    labels = []
+    for tick in inside:
+        free = all(abs(math.log(tick / other)) >= apart * math.log(high / low) for other in taken)
+        labels.append(f"{tick:g}" if free else "")
+        taken += [tick] * free
+    ax.set_xticks(inside, labels, minor=True)
 
 
 def _lines(points: Sequence[Point]) -> list[list[Point]]:
@@ -336,7 +384,7 @@ def _lines(points: Sequence[Point]) -> list[list[Point]]:
 
 
 def _method(comparison: Comparison) -> list[str]:
-    main = _name(comparison.main_quantity)
+    main = _main(comparison)
     methods = {name: (FOR_VEHICLE | FOR_LOADS)[name] for name in _methods(comparison)}
     lines = [f"{name}: {method.words}." for name, method in methods.items()]
     # With cdfm-weight the weight does not travel in a run of its own.
@@ -348,7 +396,7 @@ def _method(comparison: Comparison) -> list[str]:
             + (
                 " It is not the same everywhere: the weight is always stepped along, and errors are those of the "
                 "contact force without the weight and of the whole deflection."
-                if isinstance(comparison.scenario.case, Drive)
+                if isinstance(comparison.scenario.case, Drive) and stands_still(comparison.scenario.guideway)
                 else ""
             )
         )
