@@ -140,7 +140,7 @@ def require_endless(guideway: Guideway | FiniteGuideway, *, instead: str) -> Gui
     if isinstance(guideway, FiniteGuideway):
         raise ValueError(
             "guideway is a finite road, which has no moving FRF; step it through time: "
-            f" `movingfrf run FILE --method {instead}`, or run(method={instead!r}) in Python"
+            f"`movingfrf run FILE --method {instead}`, or run(method={instead!r}) in Python"
         )
     return guideway
 
