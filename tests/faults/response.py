@@ -123,7 +123,7 @@ FAULTS = [
         "shared.swapaxes(1, 2)) > 9 + TOLERANCES.semi",
     ),
     Fault("damping always blamed", "response/random.py", "undamped: float = 1e-9", "undamped: float = 1e9"),
-    Fault("threads that wait", "response/solve.py", "with unthreaded(system.entries):", "with unthreaded(1):"),
+    Fault("threads that wait", "response/batches.py", "limit(limits=1)", "limit(limits=2)"),
     Fault("coarse panels", "response/quadrature.py", "unresolved: float = 1e-3", "unresolved: float = 1e3"),
     Fault("panels that overlap", "response/quadrature.py", "= low[~rough], high", "= low[~rough] - 0.01, high"),
     Fault(

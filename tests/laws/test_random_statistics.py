@@ -248,8 +248,9 @@ def test_what_is_no_vehicle_and_no_spectrum():
         respond(spectrum=mf.IsoRoad, coherence=None)
 
 
-def test_many_small_matrices_are_solved_by_one_thread(monkeypatch):
-    """Of more than two contacts: LAPACK's threads would wait for each other."""
+@pytest.mark.parametrize("name", ["half_truck", "three_axles"])
+def test_small_matrices_are_solved_by_one_thread(monkeypatch, name):
+    """LAPACK's threads would wait for each other, and those of BLAS gain nothing on thin products."""
     seen = []
 
     def watched(*arguments):
@@ -258,7 +259,7 @@ def test_many_small_matrices_are_solved_by_one_thread(monkeypatch):
 
     monkeypatch.setattr("movingfrf.response.system.solved", watched)
     with threadpool_limits(limits=2):
-        respond("three_axles", coherence=None)
+        respond(name, coherence=None)
     assert set(seen) == {1}
 
 

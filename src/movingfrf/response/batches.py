@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cache
 
@@ -32,9 +32,13 @@ class Batch:
 BATCH = Batch()
 
 
-def unthreaded(entries: int) -> AbstractContextManager[object]:
-    """Keep LAPACK to one thread: many small matrices gain nothing by two, and lose tenfold if one has to wait."""
-    limit: AbstractContextManager[object] = _threads().limit(limits=1) if entries > 4 else nullcontext()
+def unthreaded() -> AbstractContextManager[object]:
+    """Keep BLAS and LAPACK to one thread.
+
+    Many small matrices and thin products gain nothing by two, take twice the processor's time, and lose tenfold if
+    one thread has to wait.
+    """
+    limit: AbstractContextManager[object] = _threads().limit(limits=1)
     return limit
 
 

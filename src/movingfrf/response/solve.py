@@ -79,7 +79,7 @@ def solve(
     progress("solving", 0.0)
     rows = math.prod(given.shape[:-1])
     step = BATCH.frequencies(max(system.entries, rows))
-    with unthreaded(system.entries):
+    with unthreaded():
         answer = system.answer(omega[:step], given[..., :step], truncation)
         if omega.size > step:
             parts = [np.zeros((*part.shape[:-1], omega.size), complex) for part in answer]

@@ -91,7 +91,7 @@ def survey(system: System, excited: Excited | None = None) -> Survey:
     starts = np.zeros(0, int) if excited is None else bands(excited)
     among = np.zeros(0, complex) if excited is None else middles(starts, excited.line)
     pieces = [among[first : first + batch] for first in range(0, among.size, batch)]
-    with unthreaded(system.entries):
+    with unthreaded():
         tables = system.at_each([np.zeros(1, complex), *path, *pieces])
         steady = steady_state(system, next(tables))
         require_stable(system, islice(tables, len(path)))
