@@ -8,9 +8,10 @@ import pytest
 import movingfrf as mf
 from movingfrf.response import batches
 from movingfrf.response.line import Line
+from movingfrf.response.sampling import excited
 from movingfrf.response.solve import solve
 from movingfrf.response.stability import _turned, along_the_axis, stretches
-from movingfrf.response.survey import Excited, survey
+from movingfrf.response.survey import survey
 from movingfrf.response.system import Prescribed, System
 from movingfrf.response.truncation import Truncation
 from tests.helpers import DAMPED, VEHICLES
@@ -42,24 +43,26 @@ def test_vehicles(name):
     """Three cases, two of them in a second axis: spectra, solution, histories and survey."""
     system = System(guideway=ROAD, vehicle=CARRIERS[name], speed=20.0)
     roads = records(4, len(CARRIERS[name].contacts)).reshape(2, 2, -1, LINE.samples)
-    together = LINE.spectra(roads)
+    together = LINE.spectra(LINE.given(roads))
     at_once = solve(system, LINE.omega(), together, truncation=CUT)
     histories = at_once.histories(LINE)
     for index in np.ndindex(2, 2):
-        alone = solve(system, LINE.omega(), LINE.spectra(roads[index]), truncation=CUT)
+        alone = solve(system, LINE.omega(), LINE.spectra(LINE.given(roads[index])), truncation=CUT)
         for mine, other in zip(alone, at_once, strict=True):
             np.testing.assert_allclose(mine, other[index], atol=1e-12 * np.abs(other).max())
         for mine, other in zip(alone.histories(LINE), histories, strict=True):
             np.testing.assert_allclose(mine.values, other.values[index], atol=1e-9 * np.abs(other.values).max())
+
     # One road is rigid from where on it may be for each of them.
-    found = [survey(system, Excited(LINE, together[index], None)).truncation for index in np.ndindex(2, 2)]
-    of_all = survey(system, Excited(LINE, together, None)).truncation
-    assert of_all.frequency == max(one.frequency for one in found)
+    def cut(some):
+        return excited(system, lambda line: line.given(some), LINE, LINE.time_step, truncation=None).truncation
+
+    assert cut(roads).frequency == max(cut(roads[index]).frequency for index in np.ndindex(2, 2))
 
 
 def test_prescribed_forces():
     system = Prescribed(guideway=ROAD, loads=np.array([0.0, -3.0]), points=np.array([0.0, 1.0, -2.0]), speed=20.0)
-    forces = LINE.spectra(records(3, 2))
+    forces = LINE.spectra(LINE.given(records(3, 2)))
     at_once = solve(system, LINE.omega(), forces, truncation=CUT).deflection
     alone = [solve(system, LINE.omega(), one, truncation=CUT).deflection for one in forces]
     np.testing.assert_allclose(at_once, alone, atol=1e-13 * np.abs(at_once).max())

@@ -2,9 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Onward:
+    """What tunes how a record goes on past its end; in brackets, between what each number is safe."""
+
+    # Slope and curvature fade over so many times the ratio of the record's typical slope to its typical curvature:
+    # enough not to add frequencies.
+    times_its_scale: float = 12.0  # [12 to 16]
+    # So many of its last samples tell what is typical.
+    lately: int = 4096  # [256 to 65 536]
+
+
+ONWARD = Onward()
 
 
 def smooth_step(x: FloatArray) -> FloatArray:
@@ -30,3 +46,48 @@ def smooth_step_slope(x: FloatArray) -> FloatArray:
     x = np.clip(x, 0.0, 1.0)
     slope: FloatArray = 30.0 * (x * (1.0 - x)) ** 2
     return slope
+
+
+def memory(slopes: FloatArray, curvatures: FloatArray) -> FloatArray:
+    """Length over which slope and curvature of a record fade past its end; inf if it is straight.
+
+    Parameters
+    ----------
+    slopes, curvatures : ndarray, shape (*record, sample)
+        First and second derivative along the record.
+
+    Returns
+    -------
+    ndarray, shape (*record)
+        In the unit of what the record runs along.
+    """
+    last = slice(-ONWARD.lately, None)
+    slope, curvature = ((values[..., last] ** 2).sum(axis=-1) for values in (slopes, curvatures))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(curvature > 0, ONWARD.times_its_scale * np.sqrt(slope / curvature), np.inf)
+
+
+def onward(
+    beyond: FloatArray, slope: FloatArray | float, curvature: FloatArray | float, length: FloatArray | float
+) -> FloatArray:
+    """How a record goes on past its end, about its last value: its slope and curvature fade out over a length.
+
+    Parameters
+    ----------
+    beyond : ndarray, shape (sample,)
+        Distance past the end, or time.
+    slope, curvature, length : ndarray, shape (*record, 1), or float
+        Derivatives at the end, and the length.
+
+    Returns
+    -------
+    ndarray, shape (*record, sample)
+        In value, slope and curvature it goes on where the record ends.
+
+    Examples
+    --------
+    >>> onward(np.array([0.0, 0.5, 1.0, 2.0]), 1.0, 0.0, 1.0).tolist()
+    [0.0, 0.25, 0.0, 0.0]
+    """
+    gone: FloatArray = beyond * (slope + 0.5 * curvature * beyond) * (1.0 - smooth_step(beyond / length))
+    return gone

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory
 from movingfrf._basics.checks import checking
-from movingfrf._basics.smooth import smooth_step
+from movingfrf._basics.smooth import ONWARD, memory, onward, smooth_step
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,14 +22,12 @@ class Transform:
     # What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the
     # padded record grow by its inverse, which is why it is not smaller.
     wrap_around: float = 3e-5  # [1e-5 to 5e-5]
-    # Share of the padding within which the level of a record fades out after its end; the rest of the padding is
-    # for the response to die away.
-    level_fades: float = 0.25  # [0.15 to 0.4]
-    # Slope and curvature fade earlier: after so many times the ratio of the record's typical slope to its typical
-    # curvature, at most within this share of the padding. So many samples before the end tell what is typical.
-    slope_fades: float = 0.05  # [0.02 to 0.1]
-    times_its_scale: float = 12.0  # [12 to 16]
-    lately: int = 4096  # [256 to 65 536]
+    # Share of the padding within which a record fades out after its end; the rest is for the response to die away.
+    fades: float = 0.25  # [0.15 to 0.4]
+    # A jump at the start is taken out as a pulse whose rate of decay is this share of a step's inverse, at least so
+    # many times that of the period.
+    pulse: float = 0.01  # [1e-3 to 0.05]
+    pulse_ends: float = 30.0  # [25 to 50]
     # Channels transformed at a time: as many as a processor's vector holds numbers.
     together: int = 4  # [1 to 64: time only]
     # Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
@@ -39,8 +37,12 @@ class Transform:
 
 TRANSFORM = Transform()
 
-# One-sided differences of fourth and third order for slope and curvature at the last sample (latest first).
-DIFFERENCES = np.array([[25 / 12, -4.0, 3.0, -4 / 3, 1 / 4], [35 / 12, -26 / 3, 19 / 2, -14 / 3, 11 / 12]])
+
+class Given(NamedTuple):
+    """What drives a system, at the instants of a line, and how it begins."""
+
+    values: FloatArray  # (*case, port, instant)
+    onset: FloatArray | None = None  # (3, *case, port): value, rate and its rate at t = 0, where it begins abruptly
 
 
 class Histories(NamedTuple):
@@ -56,6 +58,7 @@ class Line:
 
     X(ω) = ∫ x(t) e^{−iωt} dt, evaluated along ω − iη (exponential window, Kausel and Roësset 1992): the
     periodic repetition that a discrete transform implies is damped to `TRANSFORM.wrap_around` after one period.
+    What drives a system is asked for in steps of its own, finer or coarser than those of the record.
 
     Parameters
     ----------
@@ -65,18 +68,21 @@ class Line:
         Step of the record [s].
     settling : float
         Time that the padding must leave, at least, for the response to die away [s].
+    points : int, optional
+        Steps of the solution per period; None: those of the record.
 
     Examples
     --------
-    >>> line = Line(samples=1000, time_step=1e-3)
-    >>> record = np.sin(2 * np.pi * 5 * line.time) ** 3
-    >>> bool(np.allclose(line.records(line.spectra(record)).values, record, atol=1e-12))
+    >>> line = Line(samples=1000, time_step=1e-3, points=2000)
+    >>> spectrum = line.spectra(Given(np.sin(2 * np.pi * 5 * line.instants) ** 3))
+    >>> bool(np.allclose(line.records(spectrum).values, np.sin(2 * np.pi * 5 * line.time) ** 3, atol=1e-9))
     True
     """
 
     samples: int
     time_step: float
     settling: float = 0.0
+    points: int | None = None
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -87,14 +93,19 @@ class Line:
 
     @property
     def padded(self) -> int:
-        """Length of the transform: the record, time to settle, and what makes the length factorise."""
-        padding = max(self.samples // 8, int(self.settling / (1 - TRANSFORM.level_fades) / self.time_step), 16)
+        """Steps of the record per period: itself, time to settle, and what makes their number factorise."""
+        padding = max(self.samples // 8, int(self.settling / (1 - TRANSFORM.fades) / self.time_step), 16)
         return int(scipy.fft.next_fast_len(self.samples + padding, real=True))
 
     @property
     def period(self) -> float:
         """Duration of the padded record [s]."""
         return self.padded * self.time_step
+
+    @property
+    def solved(self) -> int:
+        """Steps of the solution per period."""
+        return self.padded if self.points is None else self.points
 
     @property
     def decay(self) -> float:
@@ -104,12 +115,19 @@ class Line:
     @property
     def size(self) -> int:
         """Number of complex frequencies."""
-        return self.padded // 2 + 1
+        return self.solved // 2 + 1
 
     @property
     def time(self) -> FloatArray:
         """Times of the record [s], from zero."""
         return np.arange(self.samples) * self.time_step
+
+    @property
+    def instants(self) -> FloatArray:
+        """Times at which the excitation is asked for [s]: from zero until, past the end, it has faded out."""
+        end = self.samples * self.time_step
+        faded = end + TRANSFORM.fades * (self.period - end)
+        return np.arange(int(np.ceil(faded / self.period * self.solved))) * (self.period / self.solved)
 
     def omega(self, numbers: IntArray | slice = slice(None)) -> ComplexArray:
         """Complex angular frequencies ω − iη [rad/s]: those of the given numbers, or all."""
@@ -118,37 +136,86 @@ class Line:
             numbers = np.arange(*numbers.indices(self.size))
         return step * numbers - 1j * self.decay
 
-    def spectra(self, records: FloatArray) -> ComplexArray:
-        """Transform records that are zero before their first sample.
-
-        Past its end each record is continued: smoothly in value, slope and curvature, down to zero within the
-        padding. (A record that simply stopped would jump, and the jump would ring backwards.)
+    def given(self, records: FloatArray) -> Given:
+        """Take records that are known at the steps of the record alone, and zero before their first sample.
 
         Parameters
         ----------
         records : ndarray, shape (*case, port, time)
-            Records; not modified.
+            Records; between their samples cubic splines, past the last one they go on smoothly.
+
+        Returns
+        -------
+        Given
+            At the instants of the line.
+        """
+        from scipy.interpolate import CubicSpline
+
+        if self.samples < 4:
+            records = np.concatenate([records, np.repeat(records[..., -1:], 4 - self.samples, axis=-1)], axis=-1)
+        known = np.arange(records.shape[-1]) * self.time_step
+        spline, instants = CubicSpline(known, records, axis=-1), self.instants
+        within = int(np.searchsorted(instants, known[-1], side="right"))
+        values = np.empty((*records.shape[:-1], instants.size))
+        values[..., :within] = spline(instants[:within])
+        latest = known[-ONWARD.lately :]
+        length = np.clip(memory(spline(latest, 1), spline(latest, 2)), 4 * self.time_step, known[-1])
+        slope, curvature = (spline(known[-1:], order) for order in (1, 2))
+        after = instants[within:] - known[-1]
+        values[..., within:] = records[..., -1:] + onward(after, slope, curvature, length[..., None])
+        return Given(values, np.stack([spline(0.0, order) for order in range(3)]))
+
+    def spectra(self, given: Given) -> ComplexArray:
+        """Transform what drives a system and is zero before t = 0.
+
+        Past the end of the record it fades out, within the padding. How it begins is exact in the spectrum where
+        that is told; a jump that is not told is centred at t = 0.
+
+        Parameters
+        ----------
+        given : Given
+            Values at the instants of the line; not modified.
 
         Returns
         -------
         ndarray, shape (*case, port, frequency)
             Spectra, in the unit of the record times second.
         """
-        rows = records.reshape(-1, self.samples)
-        spectra = np.empty((len(rows), self.size), complex)
-        window = self.time_step * np.exp(-self.decay * self.time_step * np.arange(self.padded))
-        together = TRANSFORM.together
+        step = self.period / self.solved
+        pulse = None
+        if given.onset is not None and given.onset.any():
+            pulse = Pulse.of(given.onset, max(TRANSFORM.pulse / step, TRANSFORM.pulse_ends / self.period))
+        spectra = self._transformed(given.values, step * np.exp(-self.decay * step * np.arange(self.solved)), pulse)
+        if pulse is not None:
+            spectra += pulse.spectrum(1j * self.omega())
+        return spectra
+
+    def magnitudes(self, values: FloatArray) -> FloatArray:
+        """Magnitudes of the spectra without the window: what is early counts no more than what is late."""
+        return np.abs(self._transformed(values, np.full(self.solved, self.period / self.solved)))
+
+    def _transformed(self, values: FloatArray, window: FloatArray, pulse: Pulse | None = None) -> ComplexArray:
+        """Let values fade out, take out a pulse, and transform; (*case, port, instant) to (…, frequency)."""
+        instants, end = self.instants, self.samples * self.time_step
+        fading = int(np.searchsorted(instants, end))
+        fade = 1.0 - smooth_step((instants[fading:] - end) / (TRANSFORM.fades * (self.period - end)))
+        rows = values.reshape(-1, instants.size)
+        pulses = None if pulse is None else pulse._replace(coefficients=pulse.coefficients.reshape(3, -1))
+        every = np.arange(self.solved) * (self.period / self.solved)
+        spectra, together = np.empty((len(rows), self.size), complex), TRANSFORM.together
         for first in range(0, len(rows), together):
-            block = rows[first : first + together]
-            padded = np.empty((len(block), self.padded))
-            padded[:, : self.samples] = block
-            for row, record in zip(padded, block, strict=True):
-                row[self.samples :] = self._continuation(record)
+            some = slice(first, first + together)
+            block = rows[some]
+            padded = np.zeros((len(block), self.solved))
+            padded[:, : instants.size] = block
+            padded[:, fading : instants.size] *= fade
+            if pulses is not None:
+                padded -= pulses._replace(coefficients=pulses.coefficients[:, some]).values(every)
             # A jump at t = 0 is centred there: half of its first sample lies before it.
             padded[:, 0] *= 0.5
             padded *= window
-            np.fft.rfft(padded, out=spectra[first : first + together])
-        return spectra.reshape(*records.shape[:-1], self.size)
+            np.fft.rfft(padded, out=spectra[some])
+        return spectra.reshape(*values.shape[:-1], self.size)
 
     def scratch(self) -> NDArray[np.float64]:
         """Memory for `records` to work in: fresh pages cost more than a transform."""
@@ -185,40 +252,80 @@ class Line:
         growth = np.exp(self.decay * self.time_step * np.arange(self.samples)) / self.time_step
         for first in range(0, len(rows), TRANSFORM.together):
             some = slice(first, first + TRANSFORM.together)
-            block = rows[some] if factor is None else rows[some] * factor
+            block = folded(rows[some] if factor is None else rows[some] * factor, self.padded)
             periodic = np.fft.irfft(block, self.padded, out=memory[: len(block)])
             np.multiply(periodic[:, : self.samples], growth, out=values[some])
             wrapped[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / self.time_step
         return Histories(values.reshape(*ports, self.samples), wrapped.reshape(ports))
 
-    def _continuation(self, record: FloatArray) -> FloatArray:
-        """Continue the record, so that neither value, slope nor curvature jumps."""
-        length = self.padded - self.samples
-        after = np.zeros(length)
-        level = record[-1]
-        settle = max(int(TRANSFORM.level_fades * length), 1)
-        after[:settle] = level * _fading(settle)
-        fade = min(self._memory(record), length)
-        taken = DIFFERENCES.shape[1]
-        if self.samples >= taken and fade > 1:
-            latest = record[: -taken - 1 : -1]
-            slope, curvature = (weights @ latest for weights in DIFFERENCES)
-            ahead = np.arange(1.0, fade + 1)
-            after[:fade] += (slope * ahead + 0.5 * curvature * ahead**2) * _fading(fade)
-        return after
 
-    def _memory(self, record: FloatArray) -> int:
-        """Count the samples over which slope and curvature fade: enough not to add frequencies."""
-        steps = np.diff(record[-TRANSFORM.lately :])
-        bends = np.diff(steps)
-        bend, step = float(bends @ bends), float(steps @ steps)
-        longest = (self.padded - self.samples) * TRANSFORM.slope_fades
-        return int(min(TRANSFORM.times_its_scale * np.sqrt(step / bend), longest)) if bend else int(longest)
+def folded(spectra: ComplexArray, samples: int) -> ComplexArray:
+    """Fold what a period of so many samples cannot tell from lower frequencies onto these.
+
+    The samples are those of the whole: nothing is filtered.
+
+    Parameters
+    ----------
+    spectra : ndarray, shape (row, frequency)
+        Harmonics of a period.
+    samples : int
+        Samples of the period.
+
+    Returns
+    -------
+    ndarray, shape (row, frequency)
+        At most samples // 2 + 1 of them.
+
+    Examples
+    --------
+    Five cycles in a period of eight samples look like three:
+
+    >>> folded(np.array([[0, 0, 0, 0, 0, 1j]]), 8).tolist()
+    [[0j, 0j, 0j, -1j, 0j]]
+    """
+    half = samples // 2
+    if spectra.shape[-1] <= half + 1:
+        return spectra
+    below = spectra[:, : half + 1].copy()
+    # What lies at zero or half the sampling frequency, irfft takes once for both signs of its frequency.
+    once = [0, half] if samples % 2 == 0 else [0]
+    below[:, once[1:]] *= 2.0
+    for first in range(0, spectra.shape[-1], samples):
+        block = spectra[:, first : first + samples]
+        if first:
+            upward = block[:, : half + 1].copy()
+            within = [number for number in once if number < upward.shape[-1]]
+            upward[:, within] *= 2.0
+            below[:, : upward.shape[-1]] += upward
+        downward = block[:, half + 1 :]
+        last = samples - half - 1
+        below[:, last - downward.shape[-1] + 1 : last + 1] += np.conj(downward[:, ::-1])
+    return below
 
 
-def _fading(count: int) -> FloatArray:
-    """From just below 1 to 0 over `count` samples."""
-    return 1.0 - smooth_step(np.arange(1, count + 1) / count)
+class Pulse(NamedTuple):
+    """(c₀ + c₁ t + c₂ t²) e^{−at} from t = 0 on: an abrupt beginning whose transform is known."""
+
+    coefficients: FloatArray  # (3, *row)
+    rate: float  # a [1/s]
+
+    @classmethod
+    def of(cls, onset: FloatArray, rate: float) -> Pulse:
+        """Take value, first and second derivative at t = 0, shape (3, *row)."""
+        value, slope, bend = onset
+        linear = slope + rate * value
+        return cls(np.stack([value, linear, 0.5 * (bend + 2 * rate * linear - rate**2 * value)]), rate)
+
+    def values(self, time: FloatArray) -> FloatArray:
+        """Values at some times [s], shape (*row, time)."""
+        constant, linear, square = self.coefficients[..., None]
+        return (constant + time * (linear + time * square)) * np.exp(-self.rate * time)
+
+    def spectrum(self, s: ComplexArray) -> ComplexArray:
+        """∫ … e^{−st} dt, shape (*row, frequency)."""
+        constant, linear, square = self.coefficients[..., None]
+        inverse = 1.0 / (s + self.rate)
+        return inverse * (constant + inverse * (linear + 2.0 * inverse * square))
 
 
 def require_record(duration: float, settling: float, time_step: float, channels: int) -> None:

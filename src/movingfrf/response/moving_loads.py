@@ -12,9 +12,9 @@ from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.line import Line, require_record
+from movingfrf.response.sampling import excited
 from movingfrf.response.solve import solve
 from movingfrf.response.system import Prescribed
-from movingfrf.response.truncation import EVERYWHERE, Truncation
 from movingfrf.results.labels import attributes, labelled, turned
 
 if TYPE_CHECKING:
@@ -96,21 +96,15 @@ def moving_loads(
     require_record(settling, settling, time_step, at.size + points.size)
     line = Line(samples=len(forces), time_step=time_step, settling=settling)
     system = Prescribed(guideway=guideway, loads=at, points=points, speed=speed)
-    cut = EVERYWHERE if truncation is None else Truncation(frequency=truncation)
-    # One case.
-    spectra, omega = line.spectra(forces.T)[None], line.omega()
-    reach = cut.reach(omega)
-    yielding = solve(system, omega[:reach], spectra[..., :reach], truncation=cut, progress=progress).deflection
-    # Beyond the truncation every so-many-th frequency, 256 of them at most [a convention], tells how much is left
-    # out.
-    first = cut.untouched(omega)
-    stride = (line.size - first) // 256 + 1
-    beyond = solve(system, omega[first::stride], spectra[..., first::stride]).deflection
-    left_out = stride * (np.abs(beyond) ** 2).sum(axis=-1)
-    whole = (np.abs(yielding) ** 2).sum(axis=-1) + left_out
-    error = float(np.sqrt(np.divide(left_out, whole, out=np.zeros_like(whole), where=whole > 0).max()))
+    progress("sampling", 0.0)
+    # One case. Where no truncation is stated nothing is left out.
+    stated = np.inf if truncation is None else truncation
+    driven_by = excited(system, lambda line: line.given(forces.T[None]), line, time_step, truncation=stated)
+    yielding = solve(
+        system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress
+    ).deflection
     progress("histories", 0.0)
-    response = line.records(yielding)
+    response, error = driven_by.line.records(yielding), driven_by.truncation.error
     critical_speed = float(guideway.critical_speed)
     found = [
         *find.near_critical(abs(speed), critical_speed),
@@ -130,7 +124,8 @@ def moving_loads(
         method="moving-frf",
         speed=speed,
         time_step=time_step,
-        truncation=0.5 / time_step if truncation is None else truncation,
+        solved_step=driven_by.step,
+        truncation=0.5 / driven_by.step if truncation is None else truncation,
         truncation_error=error,
         critical_speed=critical_speed,
         guideway=told(guideway),

@@ -10,9 +10,10 @@ import numpy as np
 import movingfrf.results.findings as find
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
-from movingfrf.response.line import Line, require_record
+from movingfrf.response.line import Given, Line, require_record
+from movingfrf.response.sampling import excited
 from movingfrf.response.solve import solve
-from movingfrf.response.survey import Excited, survey
+from movingfrf.response.survey import survey
 from movingfrf.response.system import System
 from movingfrf.results.labels import attributes, labelled, turned
 from movingfrf.roughness.excitation import Touch, excite
@@ -49,6 +50,7 @@ def simulate(
     time_step: float = 1e-3,
     truncation: float | None = None,
     blend: float = 5.0,
+    solved_step: float | None = None,
     progress: Progress = silent,
 ) -> xr.Dataset:
     """Drive a vehicle over a rough road and return what both do.
@@ -77,7 +79,11 @@ def simulate(
         would ring. None: the lowest one beyond which a rigid road changes no output by more than 1e-6 (relative
         L2), found and recorded.
     blend : float
-        Length over which the profile sets in [m]; 0 leaves it as it is.
+        Length over which the profile sets in [m]; 0 leaves it as it is. Otherwise the mean slope of its first 100 m,
+        where that is more than roughness, is part of the steady state: elevation and motion are about it.
+    solved_step : float, optional
+        Step in which the response is solved [s], finer or coarser than `time_step`. None: as fine as the content of
+        road and system needs, found and recorded; another one tells how much depends on it.
     progress : callable
         Called with the name of a stage and the fraction of it that is done.
 
@@ -113,7 +119,13 @@ def simulate(
     {'time': 2000, 'contact': 1, 'dof': 2}
     """
     journey = Journey(
-        speed=speed, duration=duration, start=start, time_step=time_step, truncation=truncation, blend=blend
+        speed=speed,
+        duration=duration,
+        start=start,
+        time_step=time_step,
+        truncation=truncation,
+        blend=blend,
+        solved_step=solved_step,
     )
     return driven(guideway, vehicle, profile, journey, progress=progress)
 
@@ -150,7 +162,6 @@ def driven(
     """
     require_guideway(guideway)
     require_vehicle(vehicle)
-    line = line_of(journey, vehicle)
     progress("profile", 0.0)
     excitation = excite(
         profile,
@@ -159,23 +170,29 @@ def driven(
         distance=journey.distance,
         blend=journey.blend,
     )
-    # One case.
-    seen = excitation.elevation(journey.travelled)[None]
-    roughness = line.spectra(seen)
-
-    progress("steady state", 0.0)
     system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)
-    surveyed = survey(system, Excited(line, roughness, journey.truncation))
-    response = solve(system, line.omega(), roughness, truncation=surveyed.truncation, progress=progress)
+    progress("steady state", 0.0)
+    surveyed = survey(system)
+    progress("sampling", 0.0)
+    # One case.
+    driven_by = excited(
+        system,
+        lambda line: Given(excitation.elevation(journey.speed * line.instants)[None]),
+        line_of(journey, vehicle),
+        excitation.station / journey.speed,
+        truncation=journey.truncation,
+        solved_step=journey.solved_step,
+    )
+    response = solve(system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress)
     progress("histories", 0.0)
-    force, deflection, motion, acceleration = response.histories(line)
+    force, deflection, motion, acceleration = response.histories(driven_by.line)
     steady = surveyed.steady
     total = steady.load[:, None] + force.values[0]
     found = [
         *find.contact_lost(turned(total), journey.time_step),
         *surveyed.findings,
         *find.not_decayed("vehicle's motion", motion.wrapped, motion.values),
-        *find.beyond_nyquist(roughness, journey.time_step),
+        *find.beyond_truncation(driven_by.truncation.frequency, driven_by.truncation.error),
     ]
     deflected = deflection.values[0]
     deflected += steady.deflection[:, None]
@@ -187,16 +204,18 @@ def driven(
         "static_deflection": steady.deflection,
         "motion": turned(motion.values[0]),
         "acceleration": turned(acceleration.values[0]),
-        "roughness": turned(seen[0]),
+        "roughness": turned(excitation.elevation(journey.travelled)),
     }
     settings = attributes(
         "coupled",
         "Coupled response of a vehicle and a guideway",
         method="moving-frf",
         **journey.settings,
-        truncation=surveyed.truncation.frequency,
-        truncation_error=surveyed.truncation.error,
+        truncation=driven_by.truncation.frequency,
+        truncation_error=driven_by.truncation.error,
+        solved_step=driven_by.step,
         datum=excitation.datum,
+        grade=excitation.grade,
         critical_speed=surveyed.critical_speed,
         guideway=told(guideway),
         profile=profile.source,

@@ -142,6 +142,24 @@ class System:
             for first, last in pairwise(ends):
                 yield Tables(*(part[..., first:last] for part in (whole.omega, whole.frf, whole.stiffness)))
 
+    def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
+        """Magnitudes of what the guideway adds to each output, and of all of it, per roughness under each contact.
+
+        Outputs are force and deflection at each contact, motion and acceleration of each degree of freedom; shapes
+        (contact, output, frequency). A rigid road changes the displacement under the contacts by −W, hence the
+        force by D W and the motion by −H W.
+        """
+        tables = self.at(omega)
+        # One case per contact under which the road is rough.
+        unit, force = tables.unit, tables.forces(tables.unit)
+        deflection = applied(tables.frf, force)
+        moved, pushed = self.dynamics.response(omega, deflection)
+        motion = moved - self.dynamics.response(omega, unit)[0]
+        squared = np.abs(omega) ** 2
+        added = np.concatenate([pushed, deflection, moved, squared * moved], axis=1)
+        whole = np.concatenate([force, deflection, motion, squared * motion], axis=1)
+        return np.abs(added), np.abs(whole)
+
     def answer(self, omega: ComplexArray, roughness: ComplexArray, truncation: Truncation) -> Response:
         """Solve for the response to roughness [m], shape (*case, contact, frequency), at ascending frequencies.
 
@@ -199,11 +217,19 @@ class Prescribed:
         """Entries of a matrix at one frequency."""
         return self.loads.size * self.points.size
 
+    def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
+        """Magnitude of the deflection per unit of each load, (load, point, frequency), all of it the guideway's."""
+        size = np.abs(self._frf(omega)).swapaxes(0, 1)
+        return size, size
+
+    def _frf(self, omega: ComplexArray) -> ComplexArray:
+        """Evaluate the moving FRF [m/N], shape (point, load, frequency)."""
+        return np.moveaxis(self.guideway.moving_frf(self.points[:, None] - self.loads, self.speed, omega), 0, -1)
+
     def answer(self, omega: ComplexArray, force: ComplexArray, truncation: Truncation) -> Yielding:
         """Deflection G F [m] under forces [N], shape (*case, load, frequency), at ascending frequencies."""
         reach = truncation.reach(omega)
         if not reach:
             return Yielding(np.zeros((*force.shape[:-2], self.points.size, 0), complex))
         omega = omega[:reach]
-        frf = self.guideway.moving_frf(self.points[:, None] - self.loads, self.speed, omega)
-        return Yielding(applied(truncation.admitted(np.moveaxis(frf, 0, -1), omega), force[..., :reach]))
+        return Yielding(applied(truncation.admitted(self._frf(omega), omega), force[..., :reach]))

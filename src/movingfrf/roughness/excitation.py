@@ -1,9 +1,11 @@
 """What contacts that travel together see of a road: in space, hence in time, and wave by wave.
 
-A contact at the distance x sees σ(x) · (E[r](x) − r₀): the elevation r, averaged over its footprint at both of its
-cams (E), about the datum r₀, and blended in by σ, which is 0 up to where the foremost contact starts and 1 from
-`blend` metres on, so that every contact meets the same road. Its rate of change is v times the slope of that. Of a
-wave e^{iκx} the average leaves the share `enveloping`.
+A contact at the distance x sees σ(x) · (E[r](x) − r₀ − g (x − x₀)): the elevation r, averaged over its footprint at
+both of its cams (E), about the datum r₀ at x₀, where the foremost contact starts, and about the grade g there, and
+blended in by σ, which is 0 up to x₀ and 1 from `blend` metres on, so that every contact meets the same road. Its
+rate of change is v times the slope of that. Of a wave e^{iκx} the average leaves the share `enveloping`.
+
+The road goes on past the end of the profile: smoothly, to a level of its own. A contact may be asked for there too.
 """
 
 from __future__ import annotations
@@ -16,14 +18,34 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.enveloping import enveloping
-from movingfrf._basics.smooth import smooth_step, smooth_step_slope
+from movingfrf._basics.smooth import memory, onward, smooth_step, smooth_step_slope
 from movingfrf.roughness.profile import SLACK, Profile
 
 if TYPE_CHECKING:
-    from scipy.interpolate import PPoly
+    from scipy.interpolate import CubicSpline, PPoly
 
-# Samples that are averaged about one level: on the way of so many a road does not climb far [256 to 16 384].
-TOGETHER = 4096
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Seeing:
+    """What tunes how contacts see a road; in brackets, between what each number is safe."""
+
+    # Samples that are averaged about one level: on the way of so many a road does not climb far.
+    together: int = 4096  # [256 to 16 384]
+    # Past its end a profile goes on over so many of its last steps at least, over this share of its length at most,
+    # in so many cubic pieces.
+    fewest: int = 4  # [2 to 16]
+    longest: float = 0.25  # [0.1 to 1]
+    pieces: int = 64  # [32 to 256]
+    # The grade is that of so many metres from the start of the hindmost contact on, as far as the profile reaches:
+    # the median of the slopes over half of it, at so many places. What is less than `least`, or than so many times
+    # the median deviation of those slopes, is roughness.
+    grade_over: float = 100.0  # [m; a convention]
+    places: int = 101  # [51 to 1001]
+    least: float = 1e-3  # [a convention]
+    deviations: float = 2.0  # [a convention]
+
+
+SEEING = Seeing()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -58,34 +80,44 @@ class Touch:
 
 
 class Along(NamedTuple):
-    """One path about its datum, going straight on beyond both ends."""
+    """One path about its datum and a grade, straight before its beginning, smooth past its end."""
 
     datum: float
     level: PPoly
 
     @classmethod
-    def of(cls, profile: Profile, path: int, datum_at: float) -> Along:
+    def of(cls, spline: CubicSpline, datum_at: float, grade: float) -> Along:
         """Prepare one path of a profile."""
-        from scipy.interpolate import PPoly
+        from scipy.interpolate import CubicSpline, PPoly
 
-        spline = profile.along(path)
-        datum = float(spline(datum_at))
-        ends = spline.x[[0, -1]]
-        (low, high), (falling, rising) = spline(ends) - datum, spline(ends, 1)
-        pieces = np.zeros((4, spline.x.size + 1))
-        pieces[:, 1:-1] = spline.c
-        pieces[3, 1:-1] -= datum
-        pieces[2:, 0], pieces[2:, -1] = (falling, low - falling), (rising, high)
-        return cls(datum, PPoly.construct_fast(pieces, np.r_[ends[0] - 1.0, spline.x, ends[1] + 1.0]))
+        datum, stations = float(spline(datum_at)), spline.x
+        level = spline.c.copy()
+        level[3] -= datum + grade * (stations[:-1] - datum_at)
+        level[2] -= grade
+        about = PPoly.construct_fast(level, stations)
+        # Past the end slope and curvature fade, over a length that adds no frequencies.
+        end, slope, curvature = (float(about(stations[-1], order)) for order in range(3))
+        extent = stations[-1] - stations[0]
+        length = float(memory(level[2], 2.0 * level[1]))
+        length = min(max(length, SEEING.fewest * extent / level.shape[1]), SEEING.longest * extent)
+        after = np.linspace(0.0, length, SEEING.pieces + 1)
+        fading = CubicSpline(after, end + onward(after, slope, curvature, length), bc_type=((1, slope), (1, 0.0)))
+        before, beyond = np.zeros((4, 1)), np.zeros((4, 1))
+        before[2, 0], before[3, 0] = level[2, 0], level[3, 0] - level[2, 0]
+        beyond[3, 0] = end
+        places = np.concatenate(
+            [[stations[0] - 1.0], stations, stations[-1] + after[1:], [stations[-1] + length + 1.0]]
+        )
+        return cls(datum, PPoly.construct_fast(np.hstack([before, level, fading.c, beyond]), places))
 
     def seen(self, distance: FloatArray, footprint: float, cams: float, derivative: int = 0) -> FloatArray:
-        """Average elevation about the datum [m], or slope [m/m], at ascending distances [m]."""
+        """Average elevation about the datum [m], or its derivatives [m/mⁿ], at ascending distances [m]."""
         if not footprint and not cams:
             found: FloatArray = self.level(distance, derivative)
             return found
         found = np.empty_like(distance)
-        for first in range(0, distance.size, TOGETHER):
-            some = slice(first, first + TOGETHER)
+        for first in range(0, distance.size, SEEING.together):
+            some = slice(first, first + SEEING.together)
             found[some] = self._averaged(distance[some], footprint, cams, derivative)
         return found
 
@@ -104,7 +136,7 @@ class Along(NamedTuple):
         pieces[3] -= height
         here = PPoly.construct_fast(pieces, places[first : last + 1] - begun)
         # Where it rises, the level is the integral of the slope.
-        integral = here if derivative else here.antiderivative()
+        integral = here.derivative(derivative - 1) if derivative else here.antiderivative()
         at = (distance - begun) + 0.5 * cams * np.array([[-1.0], [1.0]] if cams else [[0.0]])
         half = 0.5 * footprint
         if footprint:
@@ -128,12 +160,21 @@ class Excitation:
         Distance of the reference point before it has travelled [m].
     blend : float
         Length over which the profile sets in [m]; 0 leaves it as it is.
+    grade : float
+        Mean slope of the road at the beginning, about which elevation is counted [m/m].
+    station : float
+        Distance from station to station of the profile, that of most of them on the journey [m].
+    guessed : float
+        How far beyond the end of the profile a footprint or a cam reaches on the journey [m].
     """
 
     touch: Touch
     along: dict[int, Along]
     start: float
     blend: float
+    grade: float
+    station: float
+    guessed: float
 
     @property
     def datum(self) -> float:
@@ -141,7 +182,7 @@ class Excitation:
         return self.along[self.touch.paths[int(self.touch.positions.argmax())]].datum
 
     def elevation(self, travelled: FloatArray) -> FloatArray:
-        """Elevation that each contact sees, about the datum of its path.
+        """Elevation that each contact sees, about the datum of its path and the grade.
 
         Parameters
         ----------
@@ -189,7 +230,7 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
     """Let contacts travel along a profile.
 
     The elevation at the foremost contact's start is the datum, each path's own. A footprint or a cam that reaches
-    beyond an end of the profile finds it going straight on there.
+    beyond the end of the profile finds it going on smoothly there, before its beginning straight.
 
     Parameters
     ----------
@@ -202,7 +243,7 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
     distance : float
         How far it travels [m].
     blend : float
-        Length over which the profile sets in [m]; 0 leaves the profile as it is.
+        Length over which the profile sets in [m]; 0 leaves the profile as it is, with its grade.
 
     Returns
     -------
@@ -214,13 +255,50 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
     ValueError
         If the profile does not cover the journey or lacks a path.
     """
-    foremost = start + touch.positions.max()
-    require_cover(profile, start + touch.positions.min(), foremost + distance, touch.paths)
+    hindmost, foremost = start + touch.positions.min(), start + touch.positions.max()
+    require_cover(profile, hindmost, foremost + distance, touch.paths)
     # A profile without columns is the same for all paths.
     column = {path: 0 if profile.same_across else path for path in touch.paths}
-    known = {path: Along.of(profile, path, foremost) for path in set(column.values())}
-    along = {path: known[column[path]] for path in column}
-    return Excitation(touch=touch, along=along, start=start, blend=blend)
+    splines = {path: profile.along(path) for path in set(column.values())}
+    grade = grade_of(list(splines.values()), hindmost) if blend else 0.0
+    known = {path: Along.of(spline, foremost, grade) for path, spline in splines.items()}
+    stations = profile.stations
+    first, last = np.searchsorted(stations, [hindmost, foremost + distance]).tolist()
+    reach = float((touch.positions + 0.5 * (touch.footprints + touch.cams)).max())
+    return Excitation(
+        touch=touch,
+        along={path: known[column[path]] for path in column},
+        start=start,
+        blend=blend,
+        grade=grade,
+        station=float(np.median(np.diff(stations[max(first - 1, 0) : last + 1]))),
+        guessed=max(start + distance + reach - float(stations[-1]), 0.0),
+    )
+
+
+def grade_of(paths: Sequence[CubicSpline], first: float) -> float:
+    """Mean slope of a road where a journey begins; 0 where it is roughness rather than a grade.
+
+    Parameters
+    ----------
+    paths : sequence of CubicSpline
+        Elevation along the paths, which count all alike: what they differ by is roughness.
+    first : float
+        Where the journey begins [m].
+
+    Returns
+    -------
+    float
+        The median of the slopes over 50 m, within the first 100 m, or as much of it as the profile has [m/m]. It
+        depends neither on bumps nor on the duration.
+    """
+    length = min(SEEING.grade_over, min(float(spline.x[-1]) for spline in paths) - first)
+    from_here = first + np.linspace(0.0, 0.5 * length, SEEING.places)
+    half = 0.5 * length
+    slopes = np.array([(spline(from_here + half) - spline(from_here)) / half for spline in paths])
+    grade = float(np.median(slopes))
+    scatter = float(np.median(np.abs(slopes - grade)))
+    return grade if abs(grade) > max(SEEING.least, SEEING.deviations * scatter) else 0.0
 
 
 def require_cover(profile: Profile, first: float, last: float, paths: Sequence[int]) -> None:

@@ -30,6 +30,8 @@ class Journey:
         Frequency beyond which the road counts as rigid [Hz].
     blend : float
         Length over which the profile sets in [m].
+    solved_step : float, optional
+        Step in which moving FRFs solve it [s]; None: as fine as road and system need.
 
     Raises
     ------
@@ -43,6 +45,7 @@ class Journey:
     time_step: float = 1e-3
     truncation: float | None = None
     blend: float = 5.0
+    solved_step: float | None = None
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -54,6 +57,8 @@ class Journey:
             check.not_negative("blend", self.blend, "m")
             if self.truncation is not None:
                 check.not_negative("truncation", self.truncation, "Hz")
+            if self.solved_step is not None:
+                check.positive("solved_step", self.solved_step, "s")
             if not check.faults and self.samples < 2:
                 check.refuse(
                     "duration", f"must be at least two time steps of {self.time_step:g} s, got {self.duration:g} s"

@@ -166,7 +166,9 @@ class Study:
         journey = scenario(name).journey
         samples, step = journey.samples, journey.time_step
         line = Line(samples=samples, time_step=step, settling=samples * step)
-        spectrum = guideway.moving_frf(0.0, journey.speed, line.omega()) * line.spectra(history(name)[:, 0])
+        spectrum = guideway.moving_frf(0.0, journey.speed, line.omega()) * line.spectra(
+            line.given(history(name)[:, 0])
+        )
         kept = np.arange(line.size) / line.period
         return lambda cut: line.records(spectrum[kept <= cut * (1 + 1e-9)]).values[:, None]
 

@@ -1,0 +1,160 @@
+"""What each band of frequencies holds of every output, and what of that the guideway adds.
+
+Both decide what need not be solved: beyond the truncation the guideway counts as rigid, beyond the content of the
+road nothing is left.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
+from movingfrf.response.batches import BATCH
+from movingfrf.response.line import Line
+from movingfrf.response.truncation import EVERYWHERE, TRUNCATION, Truncation
+
+
+class Sized(Protocol):
+    """What tells how large its outputs are: `System` and `Prescribed`."""
+
+    @property
+    def entries(self) -> int:
+        """Entries of a matrix at one frequency."""
+        ...
+
+    def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
+        """Tell what the guideway adds to each output, and all of it, per unit at a port, (port, output, frequency)."""
+        ...
+
+
+class Share(NamedTuple):
+    """What is looked at of every output, band by band."""
+
+    gain: FloatArray  # (port, output, band) magnitude per unit of what drives that port
+    energy: FloatArray  # (case, output, band) upper bound of the energy that it carries
+
+    def beyond(self, starts: IntArray, first: int) -> FloatArray:
+        """Energy of the bands from frequency number `first` on, shape (case, output)."""
+        return self.energy[:, :, starts >= first].sum(axis=2)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Influence:
+    """Outputs, and what the compliance of the guideway adds to them, in bands.
+
+    Parameters
+    ----------
+    starts : ndarray, shape (band,)
+        Number of the first frequency of each band.
+    added : Share
+        What the guideway adds.
+    whole : Share
+        All of the output.
+    total : ndarray, shape (case, output)
+        Energy of the whole output, contacts taken as independent.
+    """
+
+    starts: IntArray
+    added: Share
+    whole: Share
+    total: FloatArray
+
+    def error(self, kept: int) -> float:
+        """Greatest relative change of any output if the road is rigid from frequency number `kept` on."""
+        return float(np.sqrt(relative(self.added.beyond(self.starts, kept), self.total).max(initial=0.0)))
+
+    def content(self, first: int) -> float:
+        """Greatest share of any output, relative L2, that lies from frequency number `first` on."""
+        return float(np.sqrt(relative(self.whole.beyond(self.starts, first), self.total).max(initial=0.0)))
+
+    def negligible_from(self, share: Share, allowed: float, magnitudes: FloatArray) -> int:
+        """Find the lowest frequency from which on a share of the outputs is negligible.
+
+        Parameters
+        ----------
+        share : Share
+            `added` or `whole`.
+        allowed : float
+            What may be left of any output, relative L2.
+        magnitudes : ndarray, shape (*case, contact, frequency)
+            Spectra of the elevation under the contacts [m s].
+
+        Returns
+        -------
+        int
+            Number of the frequency; the number of frequencies if there is no such frequency.
+        """
+        limit, total = allowed**2, self.total[:, :, None]
+        beyond = np.cumsum(share.energy[:, :, ::-1], axis=2)[:, :, ::-1]
+        harmful_bands = np.flatnonzero((relative(beyond, total) > limit).any(axis=(0, 1)))
+        if not harmful_bands.size:
+            return 0
+        band = int(harmful_bands[-1]) + 1
+        # Within the last harmful band, frequency by frequency.
+        first = int(self.starts[band - 1])
+        last = int(self.starts[band]) if band < len(self.starts) else magnitudes.shape[-1]
+        cases = magnitudes[..., first:last].reshape(-1, magnitudes.shape[-2], last - first)
+        each = (share.gain[:, :, band - 1].T @ cases) ** 2
+        tail = np.cumsum(each[:, :, ::-1], axis=2)[:, :, ::-1]
+        if band < len(self.starts):
+            tail += beyond[:, :, band, None]
+        harmful = np.flatnonzero((relative(tail, total) > limit).any(axis=(0, 1)))
+        return int(first + harmful[-1] + 1) if harmful.size else first
+
+
+def _bands(line: Line, truncation: float | None) -> IntArray:
+    """Give the number of the first frequency of each band; one band begins beyond a stated truncation [Hz]."""
+    edges = np.geomspace(1, line.size, TRUNCATION.bands + 1).astype(int)
+    cut = EVERYWHERE if truncation is None else Truncation(frequency=truncation)
+    beyond = min(cut.untouched(line.omega()), line.size - 1)
+    starts = np.unique(np.r_[0, edges, beyond])
+    return starts[starts < line.size]
+
+
+def influence(system: Sized, line: Line, magnitudes: FloatArray, truncation: float | None) -> Influence:
+    """Estimate outputs, and the guideway's part in them, from the system at the middle of each band.
+
+    Over a band, √energy ≤ Σ_j |output per unit at port j| · √(energy at that port).
+
+    Parameters
+    ----------
+    system : System or Prescribed
+        What is driven.
+    line : Line
+        The frequencies.
+    magnitudes : ndarray, shape (*case, port, frequency)
+        Of the spectra of what drives it.
+    truncation : float, optional
+        Stated truncation [Hz]: one band begins beyond it.
+
+    Returns
+    -------
+    Influence
+        Per band and output.
+    """
+    starts = _bands(line, truncation)
+    omega = line.omega((starts + np.r_[starts[1:], line.size] - 1) // 2)
+    batch = BATCH.frequencies(system.entries)
+    pieces = [system.per_unit(omega[first : first + batch]) for first in range(0, omega.size, batch)]
+    added, whole = (np.concatenate(parts, axis=2) for parts in zip(*pieces, strict=True))
+    cases = magnitudes.reshape(-1, *magnitudes.shape[-2:])
+    power = np.add.reduceat(cases**2, starts, axis=2)
+    return Influence(
+        starts=starts,
+        added=_share(added, power),
+        whole=_share(whole, power),
+        total=np.einsum("cob,ncb->no", whole**2, power),
+    )
+
+
+def _share(gain: FloatArray, power: FloatArray) -> Share:
+    return Share(gain, np.einsum("cob,ncb->nob", gain, np.sqrt(power)) ** 2)
+
+
+def relative(part: FloatArray, whole: FloatArray) -> FloatArray:
+    """Quotient of two energies; nothing of nothing is nothing."""
+    whole = np.broadcast_to(whole, part.shape)
+    return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0)
