@@ -187,7 +187,10 @@ def test_a_stiff_contact_tends_to_the_rigid_one(road):
             mf.quarter_car(**QUARTER_TRUCK | {"tyre_stiffness": k, "tyre_damping": 0.0})
             for k in (stiffness, np.inf)
         )
-        found, wanted = (mf.simulate(DAMPED[road], one, profile, speed=20.0, duration=3.0) for one in (stiff, held))
+        found, wanted = (
+            mf.simulate(DAMPED[road], one, profile, speed=20.0, duration=3.0, solved_step=1e-3)
+            for one in (stiff, held)
+        )
         errors.append(
             [
                 difference(found[name], wanted[name])
@@ -206,7 +209,7 @@ def test_a_moving_mass_follows_the_road():
         DAMPED["euler_bernoulli_winkler"], mf.wheelset(mass=2000.0), profile, speed=20.0, duration=2.0
     )
     moved = result.deflection - result.static_deflection - result.roughness
-    assert difference(result.motion.values[:, 0], moved.values[:, 0]) < 1e-9
+    assert difference(result.motion.values[:, 0], moved.values[:, 0]) < 3e-9
     assert difference(result.contact_force.values[:, 0], -2000.0 * result.acceleration.values[:, 0]) < 1e-6
     assert float(result.static_load[0]) == pytest.approx(2000 * 9.81)
 
@@ -330,7 +333,7 @@ def test_a_convoy_far_apart_is_each_vehicle_alone():
     road, truck, car = DAMPED["euler_bernoulli_winkler"], VEHICLES["half_truck"], VEHICLES["quarter_truck"]
     profile = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 2.0)), length=280.0, start=-220.0)
     both = mf.convoy([truck, car], spacing=200.0)
-    options = {"speed": 20.0, "duration": 2.0}
+    options = {"speed": 20.0, "duration": 2.0, "solved_step": 1e-3}
     together = mf.simulate(road, both, profile, **options)
     first = mf.simulate(road, truck, profile, **options)
     second = mf.simulate(road, car, profile, start=-200.0, **options)

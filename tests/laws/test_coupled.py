@@ -169,7 +169,7 @@ def test_the_rear_wheel_sees_the_front_ones_road_later():
         vertical=[1, 1, 1, 1],
         dof_names=["body_1", "wheel_1", "body_2", "wheel_2"],
     )
-    result = mf.simulate(mf.RigidGuideway(), pair, rough(), speed=10.0, duration=3.0)
+    result = mf.simulate(mf.RigidGuideway(), pair, rough(), speed=10.0, duration=3.0, solved_step=5e-4)
     front, rear = result.roughness.values.T
     np.testing.assert_allclose(rear[400:], front[:-400], atol=1e-14)
     assert np.abs(front[:400]).max() > 1e-4

@@ -396,7 +396,9 @@ def test_four_wheels_on_a_beam_are_two_axles(way):
     order: rounding (1e-12).
     """
     methods = {
-        "simulate": lambda *who: mf.simulate(TRACK, *who, speed=10.0, duration=2.0, truncation=300.0),
+        "simulate": lambda *who: mf.simulate(
+            TRACK, *who, speed=10.0, duration=2.0, truncation=300.0, solved_step=1e-3
+        ),
         "cdfm": lambda *who: mf.cdfm(travelling(0.25, 25.0, 15.0), *who, speed=10.0, duration=2.0, superposed=True),
         "sim": lambda *who: mf.sim(travelling(0.25, 25.0, 15.0), *who, speed=10.0, duration=2.0, superposed=True),
     }

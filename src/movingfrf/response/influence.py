@@ -26,7 +26,7 @@ class Sized(Protocol):
         ...
 
     def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
-        """Tell what the guideway adds to each output, and all of it, per unit at a port, (port, output, frequency)."""
+        """Tell what the guideway adds to each output, and the whole, per unit at a port: (port, output, frequency)."""
         ...
 
 
@@ -36,9 +36,9 @@ class Share(NamedTuple):
     gain: FloatArray  # (port, output, band) magnitude per unit of what drives that port
     energy: FloatArray  # (case, output, band) upper bound of the energy that it carries
 
-    def beyond(self, starts: IntArray, first: int) -> FloatArray:
-        """Energy of the bands from frequency number `first` on, shape (case, output)."""
-        return self.energy[:, :, starts >= first].sum(axis=2)
+    def between(self, starts: IntArray, first: int, end: int) -> FloatArray:
+        """Energy of the bands that begin from frequency number `first` on, before `end`; shape (case, output)."""
+        return self.energy[:, :, (starts >= first) & (starts < end)].sum(axis=2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -62,13 +62,17 @@ class Influence:
     whole: Share
     total: FloatArray
 
-    def error(self, kept: int) -> float:
-        """Greatest relative change of any output if the road is rigid from frequency number `kept` on."""
-        return float(np.sqrt(relative(self.added.beyond(self.starts, kept), self.total).max(initial=0.0)))
+    def error(self, kept: int, end: int) -> float:
+        """Greatest relative change of any output if the road is rigid from frequency number `kept` to `end`."""
+        return float(np.sqrt(relative(self.added.between(self.starts, kept, end), self.total).max(initial=0.0)))
 
     def content(self, first: int) -> float:
         """Greatest share of any output, relative L2, that lies from frequency number `first` on."""
-        return float(np.sqrt(relative(self.whole.beyond(self.starts, first), self.total).max(initial=0.0)))
+        return float(self.shares(first, np.iinfo(int).max).max(initial=0.0))
+
+    def shares(self, first: int, end: int) -> FloatArray:
+        """Greatest share of each output, relative L2, from frequency number `first` to `end`; shape (output,)."""
+        return np.sqrt(relative(self.whole.between(self.starts, first, end), self.total).max(axis=0))
 
     def negligible_from(self, share: Share, allowed: float, magnitudes: FloatArray) -> int:
         """Find the lowest frequency from which on a share of the outputs is negligible.

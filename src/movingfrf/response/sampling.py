@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.fft
 
-from movingfrf._basics.arrays import ComplexArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.smooth import smooth_step
 from movingfrf.response.batches import unthreaded
 from movingfrf.response.influence import Sized, influence
@@ -27,9 +27,9 @@ class Sampling:
     """What tunes the steps of the solution; in brackets, between what each number is safe."""
 
     # Steps from station to station of a profile at first; twice as many, and so on, until they are enough.
-    per_station: float = 2.0  # [2 to 8]
+    per_station: float = 4.0  # [2 to 8]
     # What of any output may lie in the highest quarter of the frequencies, and beyond what is solved, relative L2.
-    negligible: float = 2e-4  # [1e-6 to 3e-4]
+    negligible: float = 3e-5  # [1e-6 to 1e-4]
     quarter: float = 0.75  # where it begins [a convention]
     # With twice as many steps the energy of the highest quarter falls to this share of it at most, or else the road
     # begins with a jump: no step would be fine enough.
@@ -51,6 +51,7 @@ class Excited(NamedTuple):
     spectra: ComplexArray  # (*case, port, frequency), as far as they are solved
     truncation: Truncation
     highest: float  # of any output, relative L2, in the highest quarter of the frequencies that were looked at
+    not_shown: FloatArray  # (output,) share of it, relative L2, beyond the Nyquist frequency of the record
 
     @property
     def step(self) -> float:
@@ -124,5 +125,5 @@ def excited(
         # Where the response to rest alone is kept, some frequency below the next.
         truncation = max(kept - 1, 0.5 * (kept > 0)) / line.period
     cut = Truncation(frequency=truncation)
-    cut = replace(cut, error=found.error(cut.untouched(line.omega())))
-    return Excited(line, spectra, cut, highest)
+    cut = replace(cut, error=found.error(cut.untouched(line.omega()), count))
+    return Excited(line, spectra, cut, highest, found.shares(line.padded // 2 + 1, count))

@@ -10,6 +10,7 @@ import numpy as np
 import movingfrf.results.findings as find
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
+from movingfrf.response.accuracy import past_the_end, truncated, unresolved
 from movingfrf.response.line import Given, Line, require_record
 from movingfrf.response.sampling import excited
 from movingfrf.response.solve import solve
@@ -79,8 +80,8 @@ def simulate(
         would ring. None: the lowest one beyond which a rigid road changes no output by more than 1e-6 (relative
         L2), found and recorded.
     blend : float
-        Length over which the profile sets in [m]; 0 leaves it as it is. Otherwise the mean slope of its first 100 m,
-        where that is more than roughness, is part of the steady state: elevation and motion are about it.
+        Length over which the profile sets in [m]; 0 leaves it as it is. Else the mean slope of the first 100 m,
+        if it is more than roughness, is part of the steady state: elevation and motion are about it.
     solved_step : float, optional
         Step in which the response is solved [s], finer or coarser than `time_step`. None: as fine as the content of
         road and system needs, found and recorded; another one tells how much depends on it.
@@ -185,14 +186,24 @@ def driven(
     )
     response = solve(system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress)
     progress("histories", 0.0)
-    force, deflection, motion, acceleration = response.histories(driven_by.line)
+    histories = response.histories(driven_by.line)
+    force, deflection, motion, acceleration = histories
+    cut = truncated(system, driven_by, response, histories)
+    guessed = 0.0
+    if excitation.guessed > 0:
+        off = excitation.doubt(journey.speed * driven_by.line.instants)[None]
+        guessed = past_the_end(system, driven_by, Given(off), histories)
     steady = surveyed.steady
     total = steady.load[:, None] + force.values[0]
     found = [
         *find.contact_lost(turned(total), journey.time_step),
         *surveyed.findings,
         *find.not_decayed("vehicle's motion", motion.wrapped, motion.values),
-        *find.beyond_truncation(driven_by.truncation.frequency, driven_by.truncation.error),
+        *find.beyond_truncation(cut.frequency, cut.error),
+        *find.unresolved(unresolved(driven_by, response, histories), driven_by.step),
+        *find.not_shown(driven_by.not_shown, system.outputs, journey.time_step),
+        *find.profile_ends(guessed, excitation.guessed),
+        *find.grade_taken(excitation.grade),
     ]
     deflected = deflection.values[0]
     deflected += steady.deflection[:, None]
@@ -211,8 +222,8 @@ def driven(
         "Coupled response of a vehicle and a guideway",
         method="moving-frf",
         **journey.settings,
-        truncation=driven_by.truncation.frequency,
-        truncation_error=driven_by.truncation.error,
+        truncation=cut.frequency,
+        truncation_error=cut.error,
         solved_step=driven_by.step,
         datum=excitation.datum,
         grade=excitation.grade,

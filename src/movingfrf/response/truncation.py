@@ -20,7 +20,7 @@ class TruncationSearch:
     # The change in any output that a rigid road beyond the truncation may make is 1e-6, relative L2. The spectra
     # are those of records under an exponential window; undoing it raises what was cut early against what comes
     # late.
-    negligible: float = 3e-7  # [1e-8 to 1e-6]
+    negligible: float = 5e-7  # [1e-8 to 7e-7]
     # Bands, equally wide in the logarithm, within which the system counts as constant.
     bands: int = 160  # [80 to 640]
     # A frequency that exceeds the truncation by this share of it lies at it.

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import sys
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from types import FrameType
 from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ValidityWarning
 
 
@@ -23,8 +23,11 @@ class Thresholds:
     near_critical: float = 0.8  # share of the critical speed
     # What may wrap around from the end of the padding, and what a truncation may change, relative to a record.
     tolerated: float = 1e-3
-    # Share of the roughness that may lie in the highest tenth of the frequencies, as an amplitude.
+    # A record is as large as this share of the largest of several at least: one that hardly moves is no matter.
+    smallest: float = 1e-3
+    # Share of an output, relative L2, that may lie above the Nyquist frequency of its record.
     at_nyquist: float = 0.01
+    grade: float = 5e-3  # mean slope of a road
 
 
 THRESHOLDS = Thresholds()
@@ -35,6 +38,7 @@ class Finding(NamedTuple):
 
     code: str
     message: str
+    figure: float | None = None  # how much of a record's largest value, or of what it says, may be wrong
 
 
 def contact_lost(total_force: FloatArray, time_step: float) -> list[Finding]:
@@ -73,6 +77,7 @@ def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Find
     rows = values.reshape(-1, values.shape[-1])
     # A product of two rows would wake BLAS's threads, for nothing.
     size = np.sqrt([np.square(row).mean() for row in rows]).reshape(wrapped.shape)
+    size = np.maximum(size, THRESHOLDS.smallest * size.max(initial=0.0))
     left = np.divide(wrapped, size, out=np.zeros_like(size), where=size > 0).max(initial=0.0)
     if left <= THRESHOLDS.tolerated:
         return []
@@ -81,6 +86,7 @@ def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Find
             "not_decayed",
             f"the {name} has not died away at the end of the padded record; up to {left:.1e} of it wraps around to "
             "the start. More damping, or a longer duration, would let it decay",
+            left,
         )
     ]
 
@@ -94,28 +100,67 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
             "beyond_truncation",
             f"the road counts as rigid beyond {truncation:g} Hz, which may change an output by {error:.1e} of its "
             "root mean square; a higher truncation changes less",
+            error,
         )
     ]
 
 
-def beyond_nyquist(roughness: ComplexArray, time_step: float) -> list[Finding]:
-    """Roughness spectra, shape (*case, contact, frequency), that reach up to the Nyquist frequency."""
-    lines = roughness.shape[-1]
-    squared = np.arange(lines, dtype=float) ** 2
-    first = int(0.9 * lines)
-    share = 0.0
-    for spectrum in roughness.reshape(-1, lines):
-        energy = (spectrum.real**2 + spectrum.imag**2) * squared
-        if energy.any():
-            share = max(share, float(np.sqrt(energy[first:].sum() / energy.sum())))
+def not_shown(shares: FloatArray, names: Sequence[str], time_step: float) -> list[Finding]:
+    """Shares of outputs, relative L2, above the Nyquist frequency of their record, whose steps are [s]."""
+    share = float(shares.max(initial=0.0))
     if share <= THRESHOLDS.at_nyquist:
         return []
+    name = names[int(shares.argmax())]
     return [
         Finding(
             "beyond_nyquist",
-            f"{share:.1%} of the slope of the road, as seen by a contact, lies in the highest tenth of the "
-            f"frequencies that a step of {time_step:g} s resolves (up to {0.5 / time_step:g} Hz); "
-            "a shorter time step, or a smoother profile, is needed",
+            f"{share:.1%} of the root mean square of the {name} lies above {0.5 / time_step:g} Hz, which a record "
+            f"in steps of {time_step:g} s cannot show: its values are right, what is made of them, spectra, weighted "
+            "values and peaks, is not; a shorter time step shows more",
+            share,
+        )
+    ]
+
+
+def unresolved(figure: float, solved_step: float) -> list[Finding]:
+    """How much of the largest value may be wrong since no finer step [s] was solved."""
+    if figure <= THRESHOLDS.tolerated:
+        return []
+    return [
+        Finding(
+            "unresolved",
+            f"what the contacts see goes on above {0.5 / solved_step:.3g} Hz, up to which it was solved: outputs "
+            f"may be off by {figure:.1e} of their largest value. A road that begins abruptly is of that kind, and "
+            "kinks under a dashpot or a rigid contact; blending in, a footprint or a smoother profile would help",
+            figure,
+        )
+    ]
+
+
+def profile_ends(figure: float, beyond: float) -> list[Finding]:
+    """How much of the largest value may be wrong since contacts reach past the end of the profile [m]."""
+    if figure <= THRESHOLDS.tolerated:
+        return []
+    return [
+        Finding(
+            "profile_ends",
+            f"a footprint reaches {beyond:.3g} m past the end of the profile, where the road is guessed: the last "
+            f"samples may be off by {figure:.1e} of the largest value; a longer profile, or a shorter journey, "
+            "would do without a guess",
+            figure,
+        )
+    ]
+
+
+def grade_taken(grade: float) -> list[Finding]:
+    """Mean slope of the road where the journey begins, which is part of the steady state."""
+    if abs(grade) <= THRESHOLDS.grade:
+        return []
+    return [
+        Finding(
+            "grade",
+            f"the road begins with a grade of {100 * grade:+.2g} %, on which the vehicle is already travelling: "
+            "elevation and motion are about that line; the load transfer of a vehicle on a slope is not part of it",
         )
     ]
 

@@ -37,12 +37,14 @@ class Seeing:
     longest: float = 0.25  # [0.1 to 1]
     pieces: int = 64  # [32 to 256]
     # The grade is that of so many metres from the start of the hindmost contact on, as far as the profile reaches:
-    # the median of the slopes over half of it, at so many places. What is less than `least`, or than so many times
-    # the median deviation of those slopes, is roughness.
+    # the median of the slopes over half of it, at so many places. What is less than `least`, more on a shorter
+    # profile, or than so many times the median deviation of those slopes, is roughness.
     grade_over: float = 100.0  # [m; a convention]
     places: int = 101  # [51 to 1001]
-    least: float = 1e-3  # [a convention]
+    least: float = 2e-3  # [a convention]
     deviations: float = 2.0  # [a convention]
+    # How well the road is guessed past the end of a profile is told from so many guesses before it.
+    guesses: int = 64  # [16 to 256]
 
 
 SEEING = Seeing()
@@ -82,8 +84,10 @@ class Touch:
 class Along(NamedTuple):
     """One path about its datum and a grade, straight before its beginning, smooth past its end."""
 
-    datum: float
+    datum: float  # [m]
     level: PPoly
+    ends: float  # where the profile ends [m]
+    fades: float  # over how many metres slope and curvature fade from there on
 
     @classmethod
     def of(cls, spline: CubicSpline, datum_at: float, grade: float) -> Along:
@@ -108,7 +112,8 @@ class Along(NamedTuple):
         places = np.concatenate(
             [[stations[0] - 1.0], stations, stations[-1] + after[1:], [stations[-1] + length + 1.0]]
         )
-        return cls(datum, PPoly.construct_fast(np.hstack([before, level, fading.c, beyond]), places))
+        pieces = PPoly.construct_fast(np.hstack([before, level, fading.c, beyond]), places)
+        return cls(datum, pieces, float(stations[-1]), length)
 
     def seen(self, distance: FloatArray, footprint: float, cams: float, derivative: int = 0) -> FloatArray:
         """Average elevation about the datum [m], or its derivatives [m/mⁿ], at ascending distances [m]."""
@@ -121,6 +126,22 @@ class Along(NamedTuple):
             found[some] = self._averaged(distance[some], footprint, cams, derivative)
         return found
 
+    def doubt(self, reach: float) -> PPoly:
+        """How far a guess past the end of the profile is off as a rule, over the distance from there [m].
+
+        Guesses past places within the profile are off from what is there.
+        """
+        from scipy.interpolate import CubicSpline
+
+        last = self.ends - reach
+        span = max(min(SEEING.guesses * reach, last - self.level.x[1]), 0.0)
+        here = last - span * np.linspace(0.0, 1.0, SEEING.guesses)[:, None]
+        beyond = np.linspace(0.0, reach, SEEING.pieces + 1)
+        slope, curvature = self.level(here, 1), self.level(here, 2)
+        guessed = onward(beyond, slope, curvature, self.fades)
+        off = guessed - (self.level(here + beyond) - self.level(here))
+        return CubicSpline(beyond, np.sqrt(np.square(off).mean(axis=0)), bc_type=((1, 0.0), "not-a-knot"))
+
     def _averaged(self, distance: FloatArray, footprint: float, cams: float, derivative: int) -> FloatArray:
         """Average a stretch of it, counted from where that begins and about the level there.
 
@@ -130,7 +151,7 @@ class Along(NamedTuple):
         from scipy.interpolate import PPoly
 
         places, begun, reach = self.level.x, distance[0], 0.5 * (footprint + cams)
-        first = max(int(np.searchsorted(places, begun - reach)) - 1, 0)
+        first = min(max(int(np.searchsorted(places, begun - reach)) - 1, 0), places.size - 2)
         last = max(int(np.searchsorted(places, distance[-1] + reach)), first + 1)
         pieces, height = self.level.c[:, first:last].copy(), self.level(begun)
         pieces[3] -= height
@@ -212,6 +233,22 @@ class Excitation:
                 rising[:blending] += early * smooth_step_slope(setting_in) / self.blend
             np.multiply(rising, speed, out=rate[row])
         return rate
+
+    def doubt(self, travelled: FloatArray) -> FloatArray:
+        """How far the elevation under each contact is off as a rule, as for `elevation`, past the end of a profile.
+
+        A footprint or a cam reaches there before its contact does.
+        """
+        doubt = np.zeros((self.touch.positions.size, travelled.size))
+        for row, along, distance, (footprint, cams), _ in self._each(travelled):
+            reach = 0.5 * (footprint + cams)
+            if not reach:
+                continue
+            off = along.doubt(reach)
+            past = np.clip(distance + reach - along.ends, 0.0, reach)
+            feet = 2.0 if cams else 1.0
+            doubt[row] = (off.antiderivative()(past) / footprint if footprint else off(past)) / feet
+        return doubt
 
     def _each(
         self, travelled: FloatArray
@@ -298,7 +335,9 @@ def grade_of(paths: Sequence[CubicSpline], first: float) -> float:
     slopes = np.array([(spline(from_here + half) - spline(from_here)) / half for spline in paths])
     grade = float(np.median(slopes))
     scatter = float(np.median(np.abs(slopes - grade)))
-    return grade if abs(grade) > max(SEEING.least, SEEING.deviations * scatter) else 0.0
+    # Long waves look like a grade to a short profile, all the more the shorter it is.
+    least = SEEING.least * (SEEING.grade_over / length) ** 2
+    return grade if abs(grade) > max(least, SEEING.deviations * scatter) else 0.0
 
 
 def require_cover(profile: Profile, first: float, last: float, paths: Sequence[int]) -> None:

@@ -1,0 +1,157 @@
+"""How far the record of a solved response may be off, in figures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf.response.line import Given, Histories
+from movingfrf.response.sampling import SAMPLING, Excited
+from movingfrf.response.solve import solve
+from movingfrf.response.system import CoupledHistories, Response, System
+from movingfrf.response.truncation import EVERYWHERE, Truncation
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Doubt:
+    """What tunes the figures; in brackets, between what each number is safe."""
+
+    # Each octave that is not solved counts as so much of the one below at most: of a jump all octaves hold the same,
+    # and all that are left out together half of it.
+    next_octave: float = 0.7  # [0.6 to 0.8]
+    # A channel is as large as this share of the largest of its kind at least: one that hardly moves is no matter.
+    smallest: float = 1e-3  # [a convention]
+    # From this estimate on what a stated truncation changes is computed rather than estimated.
+    estimated: float = 1e-4  # [1e-5 to 5e-4]
+
+
+DOUBT = Doubt()
+
+
+def relative(part: CoupledHistories, whole: CoupledHistories, *, peaks: bool = True) -> float:
+    """Greatest share that a part of the response has of any channel.
+
+    Parameters
+    ----------
+    part, whole : CoupledHistories
+        Dynamic parts of the response.
+    peaks : bool
+        Whether largest values are compared; otherwise root mean squares.
+
+    Returns
+    -------
+    float
+        Relative to the channel.
+    """
+
+    def size(records: Histories) -> FloatArray:
+        if peaks:
+            return np.abs(records.values).max(axis=-1)
+        return np.sqrt(np.square(records.values).mean(axis=-1))
+
+    greatest = 0.0
+    for mine, all_of_it in zip(part, whole, strict=True):
+        of_whole = size(all_of_it)
+        of_whole = np.maximum(of_whole, DOUBT.smallest * of_whole.max(initial=0.0))
+        share = np.divide(size(mine), of_whole, out=np.zeros_like(of_whole), where=of_whole > 0)
+        greatest = max(greatest, float(share.max(initial=0.0)))
+    return greatest
+
+
+def unresolved(driven_by: Excited, response: Response, histories: CoupledHistories) -> float:
+    """Estimate what the octaves hold that were not solved, from the two highest ones that were.
+
+    Parameters
+    ----------
+    driven_by : Excited
+        What was solved.
+    response : Response
+        Its spectra.
+    histories : CoupledHistories
+        Its records.
+
+    Returns
+    -------
+    float
+        Relative to the largest value of a channel; 0 where content ended before.
+    """
+    if driven_by.highest <= SAMPLING.negligible:
+        return 0.0
+    count, line = driven_by.omega.size, driven_by.line
+    lower, upper = (
+        relative(_from(response, count // share, 2 * count // share).histories(line), histories) for share in (4, 2)
+    )
+    ratio = min(upper / lower if lower else 0.0, DOUBT.next_octave)
+    return upper * ratio / (1.0 - ratio)
+
+
+def _from(response: Response, first: int, end: int) -> Response:
+    """Take a band of the response, and nothing else."""
+
+    def band(spectra: ComplexArray) -> ComplexArray:
+        taken = spectra[..., :end].copy()
+        taken[..., :first] = 0.0
+        return taken
+
+    return Response(*map(band, response))
+
+
+def past_the_end(system: System, driven_by: Excited, given: Given, histories: CoupledHistories) -> float:
+    """Estimate what guesses about the road past the end of its profile change.
+
+    Parameters
+    ----------
+    system : System
+        Vehicle and road.
+    driven_by : Excited
+        What was solved.
+    given : Given
+        How far the elevation is off as a rule.
+    histories : CoupledHistories
+        The records.
+
+    Returns
+    -------
+    float
+        Relative to the largest value of a channel.
+    """
+    omega = driven_by.omega
+    off = driven_by.line.spectra(given)[..., : omega.size]
+    response = solve(system, omega, off, truncation=driven_by.truncation)
+    return relative(response.histories(driven_by.line), histories)
+
+
+def truncated(system: System, driven_by: Excited, response: Response, histories: CoupledHistories) -> Truncation:
+    """Say of a truncation what it changes: estimated where that is little, otherwise computed.
+
+    Parameters
+    ----------
+    system : System
+        Vehicle and road.
+    driven_by : Excited
+        What was solved.
+    response : Response
+        Its spectra.
+    histories : CoupledHistories
+        Its records.
+
+    Returns
+    -------
+    Truncation
+        The same, with the greatest relative change of any channel, root mean square over the record.
+    """
+    cut, omega = driven_by.truncation, driven_by.omega
+    if cut.error <= DOUBT.estimated:
+        return cut
+    first = cut.untouched(omega)
+    whole = solve(system, omega[first:], driven_by.spectra[..., first:], truncation=EVERYWHERE)
+    change = []
+    for with_it, without in zip(response, whole, strict=True):
+        difference = np.zeros((*without.shape[:-1], omega.size), complex)
+        difference[..., first:] = without
+        difference[..., first : with_it.shape[-1]] -= with_it[..., first:]
+        change.append(difference)
+    error = relative(Response(*change).histories(driven_by.line), histories, peaks=False)
+    return Truncation(frequency=cut.frequency, error=error)
