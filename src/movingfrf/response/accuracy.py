@@ -18,8 +18,8 @@ from movingfrf.response.truncation import EVERYWHERE, Truncation
 class Doubt:
     """What tunes the figures; in brackets, between what each number is safe."""
 
-    # Each octave that is not solved counts as so much of the one below at most: of a jump all octaves hold the same,
-    # and all that are left out together half of it.
+    # Each octave that is not solved counts as so much of the one below at most: of a jump all octaves hold the
+    # same, and all that are left out together half of it.
     next_octave: float = 0.7  # [0.6 to 0.8]
     # A channel is as large as this share of the largest of its kind at least: one that hardly moves is no matter.
     smallest: float = 1e-3  # [a convention]

@@ -26,7 +26,7 @@ class Sized(Protocol):
         ...
 
     def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
-        """Tell what the guideway adds to each output, and the whole, per unit at a port: (port, output, frequency)."""
+        """Tell what the guideway adds to each output, and its size, per unit at a port: (port, output, frequency)."""
         ...
 
 

@@ -31,8 +31,8 @@ class Sampling:
     # What of any output may lie in the highest quarter of the frequencies, and beyond what is solved, relative L2.
     negligible: float = 3e-5  # [1e-6 to 1e-4]
     quarter: float = 0.75  # where it begins [a convention]
-    # With twice as many steps the energy of the highest quarter falls to this share of it at most, or else the road
-    # begins with a jump: no step would be fine enough.
+    # With four times as many steps the energy there falls to this share of it at most, or else the road begins with a
+    # jump: no step would be fine enough.
     falling: float = 0.25  # [0.1 to 0.5]
     # Least and most steps per period.
     least: int = 256  # [64 to 1024]
@@ -98,7 +98,7 @@ def excited(
     points = max(SAMPLING.per_station * line.period / step, SAMPLING.least)
     if solved_step is not None:
         points = np.ceil(line.period / solved_step)
-    before = np.inf
+    before = [np.inf, np.inf]
     with unthreaded():
         while True:
             points = scipy.fft.next_fast_len(int(points), real=True)
@@ -108,9 +108,9 @@ def excited(
             found = influence(system, line, magnitudes, truncation)
             highest = found.content(int(SAMPLING.quarter * line.size))
             enough = solved_step is not None or highest <= SAMPLING.negligible
-            if enough or points >= SAMPLING.most or highest**2 > SAMPLING.falling * before:
+            if enough or points >= SAMPLING.most or highest**2 > SAMPLING.falling * before[-2]:
                 break
-            points, before = 2 * points, highest**2
+            points, before = 2 * points, [*before, highest**2]
     ends = line.size
     if solved_step is None:
         ends = found.negligible_from(found.whole, SAMPLING.negligible, magnitudes)
