@@ -35,6 +35,8 @@ class Finding(NamedTuple):
 
     code: str
     message: str
+    # How far an output may be off, relative to the largest value of its channel; None where nothing is off by that.
+    figure: float | None = None
 
 
 def contact_lost(total_force: FloatArray, time_step: float) -> list[Finding]:
@@ -73,7 +75,7 @@ def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Find
     rows = values.reshape(-1, values.shape[-1])
     # A product of two rows would wake BLAS's threads, for nothing.
     size = np.sqrt([np.square(row).mean() for row in rows]).reshape(wrapped.shape)
-    left = np.divide(wrapped, size, out=np.zeros_like(size), where=size > 0).max(initial=0.0)
+    left = relative(wrapped, size)
     if left <= THRESHOLDS.tolerated:
         return []
     return [
@@ -81,8 +83,14 @@ def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Find
             "not_decayed",
             f"the {name} has not died away at the end of the padded record; up to {left:.1e} of it wraps around to "
             "the start. More damping, or a longer duration, would let it decay",
+            relative(wrapped, np.abs(values).max(axis=-1, initial=0.0)),
         )
     ]
+
+
+def relative(part: FloatArray, whole: FloatArray) -> float:
+    """Greatest quotient of two sizes; nothing of nothing is nothing."""
+    return float(np.divide(part, whole, out=np.zeros_like(whole), where=whole > 0).max(initial=0.0))
 
 
 def beyond_truncation(truncation: float, error: float) -> list[Finding]:
@@ -94,6 +102,7 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
             "beyond_truncation",
             f"the road counts as rigid beyond {truncation:g} Hz, which may change an output by {error:.1e} of its "
             "root mean square; a higher truncation changes less",
+            error,
         )
     ]
 
@@ -129,4 +138,4 @@ def announced(found: Iterable[Finding]) -> str:
     found = list(found)
     for finding in found:
         warnings.warn(finding.message, ValidityWarning, stacklevel=level)
-    return json.dumps([finding._asdict() for finding in found])
+    return json.dumps([{key: value for key, value in f._asdict().items() if value is not None} for f in found])
