@@ -11,7 +11,7 @@ from functools import partial
 from tests.honest.comparison import CODES, FALSE_ALARMS, TOLERATED, Outcome, outcome
 
 ROW = (
-    "{number:>4} {difference:>8} {truth:>8} {where:>6} {channel:<16} {speed:>5} {step:>6} {duration:>6} "
+    "{number:>4} {difference:>8} {truth:>8} {where:>6} {channel:<16} {share:>7} {speed:>5} {step:>6} {duration:>6} "
     "{solved:>9} {ends:>5}  {vehicle} | {guideway} | {profile} | {findings}"
 )
 HEADS = {
@@ -22,7 +22,7 @@ HEADS = {
     "speed": "m/s",
     "step": "ms",
     "duration": "s",
-} | {name: name for name in ("where", "channel", "ends", "vehicle", "guideway", "profile", "findings")}
+} | {name: name for name in ("where", "channel", "share", "ends", "vehicle", "guideway", "profile", "findings")}
 
 
 def row(found: Outcome) -> str:
@@ -38,6 +38,7 @@ def row(found: Outcome) -> str:
         truth="" if found.exact is None else f"{found.exact.size:.1e}",
         where=worst.where,
         channel=worst.channel,
+        share=f"{worst.share:.1g}",
         solved=f"{1e3 * found.solved_step:.2g}",
         findings=found.failed or ", ".join(told),
         **found.said,

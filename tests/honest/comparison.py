@@ -32,6 +32,7 @@ class Difference:
     size: float = 0.0
     channel: str = "none"
     at: float = 0.0  # share of the record
+    share: float = 1.0  # of the channel's largest value in that of the largest channel of its kind
 
     @property
     def where(self) -> str:
@@ -95,7 +96,12 @@ def difference(result: Channels, reference: Channels) -> Difference:
             off = np.abs(rows[number] - truth[number])
             at = int(off.argmax())
             if off[at] > worst.size * sizes[number]:
-                worst = Difference(size=off[at] / sizes[number], channel=f"{name} {number}", at=at / off.size)
+                worst = Difference(
+                    size=float(off[at] / sizes[number]),
+                    channel=f"{name} {number}",
+                    at=at / off.size,
+                    share=float(sizes[number] / sizes.max()),
+                )
     return worst
 
 

@@ -89,11 +89,17 @@ def level_first(draw: Draw, first: float, length: float, met: tuple[float, float
 
 
 def levelled(profile: mf.Profile, first: float, over: float) -> mf.Profile:
-    """Let a road begin level, at its own height there: for who does not blend it in."""
+    """Let a road begin level, at its own height there: for who does not blend it in.
+
+    Stations are dense there: between those of a measured road, the spline would overshoot where it is level.
+    """
     stations = profile.stations
+    dense = np.arange(stations[0], first + over, 0.01)
+    stations = np.r_[dense, stations[stations > dense[-1] + 0.005]]
     share = np.clip((stations - first) / over, 0.0, 1.0)
-    step = share**3 * (10 + share * (6 * share - 15))
-    columns = np.stack([step * (column - profile.along(0)(first)) for column in profile.columns.T], axis=1)
+    step = share**4 * (35 - share * (84 - share * (70 - 20 * share)))
+    splines = [profile.along(path) for path in range(profile.paths)]
+    columns = np.stack([step * (spline(stations) - spline(first)) for spline in splines], axis=1)
     return mf.Profile(stations, columns[:, 0] if profile.same_across else columns)
 
 
