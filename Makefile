@@ -12,7 +12,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 TESTS = PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadgroup
 
-.PHONY: demo paper test test-slow test-lowest coverage bench against scale random fuzz accuracy faults calls lint format dist picture clean
+.PHONY: demo paper test test-slow test-lowest coverage bench against scale random fuzz honest accuracy faults calls lint format dist picture clean
 
 demo: $(READY)
 	@mkdir -p out
@@ -64,6 +64,11 @@ random: $(READY)
 # Thousands of damaged files for every reader of profiles.
 fuzz: $(READY)
 	$(BIN)/python -m tests.fuzz_readers
+
+# Three hundred drawn cases, each against the same solved finer on a longer record; CASES=17 one of them alone.
+CASES ?=
+honest: $(READY)
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.honest --jobs $(JOBS) $(addprefix --only ,$(CASES))
 
 accuracy: $(READY)
 	$(BIN)/python -m benchmarks.accuracy

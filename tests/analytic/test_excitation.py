@@ -122,3 +122,9 @@ def test_far_above_the_sea_a_footprint_averages_as_well():
     )
     # As many digits as elevations of 4000 m have.
     np.testing.assert_allclose(raised, low, atol=1e-11)
+
+
+def test_a_footprint_may_be_asked_for_however_far_beyond_the_profile():
+    excitation = excite(SURFACE, TOUCH, start=2.0, distance=30.0, blend=0.0)
+    beyond = excitation.elevation(np.linspace(0.0, 4000.0, 20_000))
+    np.testing.assert_allclose(beyond[:, -8192:], beyond[:, -1:] + np.zeros(8192), rtol=0, atol=1e-12)

@@ -38,7 +38,8 @@ class Finding(NamedTuple):
 
     code: str
     message: str
-    figure: float | None = None  # how much of a record's largest value, or of what it says, may be wrong
+    # How far an output may be off, relative to the largest value of its channel; None where nothing is off by that.
+    figure: float | None = None
 
 
 def contact_lost(total_force: FloatArray, time_step: float) -> list[Finding]:
@@ -78,7 +79,7 @@ def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Find
     # A product of two rows would wake BLAS's threads, for nothing.
     size = np.sqrt([np.square(row).mean() for row in rows]).reshape(wrapped.shape)
     size = np.maximum(size, THRESHOLDS.smallest * size.max(initial=0.0))
-    left = np.divide(wrapped, size, out=np.zeros_like(size), where=size > 0).max(initial=0.0)
+    left = relative(wrapped, size)
     if left <= THRESHOLDS.tolerated:
         return []
     return [
@@ -86,9 +87,14 @@ def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Find
             "not_decayed",
             f"the {name} has not died away at the end of the padded record; up to {left:.1e} of it wraps around to "
             "the start. More damping, or a longer duration, would let it decay",
-            left,
+            relative(wrapped, np.abs(values).max(axis=-1, initial=0.0)),
         )
     ]
+
+
+def relative(part: FloatArray, whole: FloatArray) -> float:
+    """Greatest quotient of two sizes; nothing of nothing is nothing."""
+    return float(np.divide(part, whole, out=np.zeros_like(whole), where=whole > 0).max(initial=0.0))
 
 
 def beyond_truncation(truncation: float, error: float) -> list[Finding]:
@@ -174,4 +180,4 @@ def announced(found: Iterable[Finding]) -> str:
     found = list(found)
     for finding in found:
         warnings.warn(finding.message, ValidityWarning, stacklevel=level)
-    return json.dumps([finding._asdict() for finding in found])
+    return json.dumps([{key: value for key, value in f._asdict().items() if value is not None} for f in found])

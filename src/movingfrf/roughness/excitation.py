@@ -151,6 +151,7 @@ class Along(NamedTuple):
         from scipy.interpolate import PPoly
 
         places, begun, reach = self.level.x, distance[0], 0.5 * (footprint + cams)
+        # A stretch may lie beyond all places: there the last piece goes on.
         first = min(max(int(np.searchsorted(places, begun - reach)) - 1, 0), places.size - 2)
         last = max(int(np.searchsorted(places, distance[-1] + reach)), first + 1)
         pieces, height = self.level.c[:, first:last].copy(), self.level(begun)
