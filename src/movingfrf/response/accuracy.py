@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.arrays import FloatArray
 from movingfrf.response.line import Given, Histories
-from movingfrf.response.sampling import SAMPLING, Excited
+from movingfrf.response.sampling import Excited
 from movingfrf.response.solve import solve
 from movingfrf.response.system import CoupledHistories, Response, System
 from movingfrf.response.truncation import EVERYWHERE, Truncation
@@ -18,9 +19,6 @@ from movingfrf.response.truncation import EVERYWHERE, Truncation
 class Doubt:
     """What tunes the figures; in brackets, between what each number is safe."""
 
-    # Each octave that is not solved counts as so much of the one below at most: of a jump all octaves hold the
-    # same, and all that are left out together half of it.
-    next_octave: float = 0.7  # [0.6 to 0.8]
     # A channel is as large as this share of the largest of its kind at least: one that hardly moves is no matter.
     smallest: float = 1e-3  # [a convention]
     # From this estimate on what a stated truncation changes is computed rather than estimated.
@@ -30,7 +28,13 @@ class Doubt:
 DOUBT = Doubt()
 
 
-def relative(part: CoupledHistories, whole: CoupledHistories, *, peaks: bool = True) -> float:
+def relative(
+    part: CoupledHistories,
+    whole: CoupledHistories,
+    *,
+    peaks: bool = True,
+    factors: Sequence[FloatArray | float] = (1.0, 1.0, 1.0, 1.0),
+) -> float:
     """Greatest share that a part of the response has of any channel.
 
     Parameters
@@ -39,6 +43,8 @@ def relative(part: CoupledHistories, whole: CoupledHistories, *, peaks: bool = T
         Dynamic parts of the response.
     peaks : bool
         Whether largest values are compared; otherwise root mean squares.
+    factors : sequence of ndarray
+        By what the part is multiplied, one for each channel of each kind.
 
     Returns
     -------
@@ -52,16 +58,16 @@ def relative(part: CoupledHistories, whole: CoupledHistories, *, peaks: bool = T
         return np.sqrt(np.square(records.values).mean(axis=-1))
 
     greatest = 0.0
-    for mine, all_of_it in zip(part, whole, strict=True):
+    for mine, all_of_it, factor in zip(part, whole, factors, strict=True):
         of_whole = size(all_of_it)
         of_whole = np.maximum(of_whole, DOUBT.smallest * of_whole.max(initial=0.0))
-        share = np.divide(size(mine), of_whole, out=np.zeros_like(of_whole), where=of_whole > 0)
+        share = np.divide(factor * size(mine), of_whole, out=np.zeros_like(of_whole), where=of_whole > 0)
         greatest = max(greatest, float(share.max(initial=0.0)))
     return greatest
 
 
 def unresolved(driven_by: Excited, response: Response, histories: CoupledHistories) -> float:
-    """Estimate what the octaves hold that were not solved, from the two highest ones that were.
+    """Estimate what is not solved from the highest octave that is: from its largest values and its energy.
 
     Parameters
     ----------
@@ -75,27 +81,15 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
     Returns
     -------
     float
-        Relative to the largest value of a channel; 0 where content ended before.
+        Relative to the largest value of a channel.
     """
-    if driven_by.highest <= SAMPLING.negligible:
-        return 0.0
-    count, line = driven_by.omega.size, driven_by.line
-    lower, upper = (
-        relative(_from(response, count // share, 2 * count // share).histories(line), histories) for share in (4, 2)
-    )
-    ratio = min(upper / lower if lower else 0.0, DOUBT.next_octave)
-    return upper * ratio / (1.0 - ratio)
-
-
-def _from(response: Response, first: int, end: int) -> Response:
-    """Take a band of the response, and nothing else."""
-
-    def band(spectra: ComplexArray) -> ComplexArray:
-        taken = spectra[..., :end].copy()
-        taken[..., :first] = 0.0
-        return taken
-
-    return Response(*map(band, response))
+    count = driven_by.omega.size
+    octave = [spectra.copy() for spectra in response]
+    for spectra in octave:
+        spectra[..., : count // 2] = 0.0
+    ports = [spectra.shape[-2] for spectra in (response.force, response.deflection, response.motion)]
+    beyond = np.split(driven_by.beyond, np.cumsum([*ports, ports[-1]])[:-1])
+    return relative(Response(*octave).histories(driven_by.line), histories, factors=beyond)
 
 
 def past_the_end(system: System, driven_by: Excited, given: Given, histories: CoupledHistories) -> float:

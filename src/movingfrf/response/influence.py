@@ -26,7 +26,7 @@ class Sized(Protocol):
         ...
 
     def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
-        """Tell what the guideway adds to each output, and its size, per unit at a port: (port, output, frequency)."""
+        """Say what the guideway adds to each output, and its size, per unit: (port, output, frequency)."""
         ...
 
 
@@ -55,12 +55,15 @@ class Influence:
         All of the output.
     total : ndarray, shape (case, output)
         Energy of the whole output, contacts taken as independent.
+    lines : int
+        Number of the frequencies.
     """
 
     starts: IntArray
     added: Share
     whole: Share
     total: FloatArray
+    lines: int
 
     def error(self, kept: int, end: int) -> float:
         """Greatest relative change of any output if the road is rigid from frequency number `kept` to `end`."""
@@ -68,7 +71,7 @@ class Influence:
 
     def content(self, first: int) -> float:
         """Greatest share of any output, relative L2, that lies from frequency number `first` on."""
-        return float(self.shares(first, np.iinfo(int).max).max(initial=0.0))
+        return float(self.shares(first, self.lines).max(initial=0.0))
 
     def shares(self, first: int, end: int) -> FloatArray:
         """Greatest share of each output, relative L2, from frequency number `first` to `end`; shape (output,)."""
@@ -151,6 +154,7 @@ def influence(system: Sized, line: Line, magnitudes: FloatArray, truncation: flo
         added=_share(added, power),
         whole=_share(whole, power),
         total=np.einsum("cob,ncb->no", whole**2, power),
+        lines=line.size,
     )
 
 

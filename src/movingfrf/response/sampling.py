@@ -17,7 +17,7 @@ import scipy.fft
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.smooth import smooth_step
 from movingfrf.response.batches import unthreaded
-from movingfrf.response.influence import Sized, influence
+from movingfrf.response.influence import Influence, Sized, influence
 from movingfrf.response.line import Given, Line
 from movingfrf.response.truncation import TRUNCATION, Truncation
 
@@ -29,14 +29,19 @@ class Sampling:
     # Steps from station to station of a profile at first; twice as many, and so on, until they are enough.
     per_station: float = 4.0  # [2 to 8]
     # What of any output may lie in the highest quarter of the frequencies, and beyond what is solved, relative L2.
+    # Where that turns out to be more than `tolerated` of the largest value of a channel, so much less, and again.
     negligible: float = 3e-5  # [1e-6 to 1e-4]
-    quarter: float = 0.75  # where it begins [a convention]
-    # With four times as many steps the energy there falls to this share of it at most, or else the road begins with a
-    # jump: no step would be fine enough.
+    tolerated: float = 3e-4  # [1e-4 to 5e-4]
+    rounds: int = 3  # [2 to 5]
+    # Where the highest quarter begins; what lies beyond holds at most so many times its energy.
+    quarter: float = 0.75  # [a convention]
+    beyond: float = 3.0  # [1 to 4]
+    # With four times as many steps the energy there falls to this share of it at most, or else the road begins with
+    # a jump: no step would be fine enough.
     falling: float = 0.25  # [0.1 to 0.5]
-    # Least and most steps per period.
+    # Least steps per period, and most for all ports together.
     least: int = 256  # [64 to 1024]
-    most: int = 2**22  # [2**20 to 2**26: time and memory only]
+    most: int = 2**23  # [2**21 to 2**27: time and memory only]
     # Share of the solved frequencies over which the road fades out.
     fades: float = 0.1  # [0.05 to 0.2]
 
@@ -50,7 +55,8 @@ class Excited(NamedTuple):
     line: Line
     spectra: ComplexArray  # (*case, port, frequency), as far as they are solved
     truncation: Truncation
-    highest: float  # of any output, relative L2, in the highest quarter of the frequencies that were looked at
+    finest: bool  # whether no finer step would help, or none was to be looked for
+    beyond: FloatArray  # (output,) what lies beyond over what lies in the highest octave that is solved
     not_shown: FloatArray  # (output,) share of it, relative L2, beyond the Nyquist frequency of the record
 
     @property
@@ -72,6 +78,7 @@ def excited(
     *,
     truncation: float | None,
     solved_step: float | None = None,
+    negligible: float = SAMPLING.negligible,
 ) -> Excited:
     """Find the steps in which a record is solved.
 
@@ -88,7 +95,9 @@ def excited(
     truncation : float, optional
         Frequency beyond which the road counts as rigid [Hz]; None: it is found.
     solved_step : float, optional
-        Steps that are stated [s].
+        Step that is stated [s].
+    negligible : float
+        What of any output may be left out, relative L2.
 
     Returns
     -------
@@ -96,34 +105,52 @@ def excited(
         Spectra of what drives it, and what of them need not be solved.
     """
     points = max(SAMPLING.per_station * line.period / step, SAMPLING.least)
-    if solved_step is not None:
-        points = np.ceil(line.period / solved_step)
-    before = [np.inf, np.inf]
+    stated = None if solved_step is None else int(np.ceil(0.5 * line.period / solved_step)) + 1
+    if stated is not None:
+        points = max(points, 2.0 * stated)
+    energies = [np.inf, np.inf]
     with unthreaded():
         while True:
-            points = scipy.fft.next_fast_len(int(points), real=True)
-            line = replace(line, points=points)
+            line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
             driving = given(line)
+            ports = driving.values[..., 0].size
             magnitudes = line.magnitudes(driving.values)
             found = influence(system, line, magnitudes, truncation)
             highest = found.content(int(SAMPLING.quarter * line.size))
-            enough = solved_step is not None or highest <= SAMPLING.negligible
-            if enough or points >= SAMPLING.most or highest**2 > SAMPLING.falling * before[-2]:
+            finest = 2 * points * ports > SAMPLING.most or highest**2 > SAMPLING.falling * energies[-2]
+            if finest or stated is not None or highest <= negligible:
                 break
-            points, before = 2 * points, [*before, highest**2]
-    ends = line.size
-    if solved_step is None:
-        ends = found.negligible_from(found.whole, SAMPLING.negligible, magnitudes)
-    count = min(int(ends * (1 + SAMPLING.fades)) + 2, line.size)
+            points, energies = 2 * points, [*energies, highest**2]
+    if stated is None:
+        ends = found.negligible_from(found.whole, negligible, magnitudes)
+        count = min(int(ends * (1 + SAMPLING.fades)) + 2, line.size)
+    else:
+        count = min(stated, line.size)
+        ends = int(count / (1 + SAMPLING.fades))
     spectra = line.spectra(driving)[..., :count]
-    if count < line.size:
-        # What a sharp cut discards would ring on, and the window raises what comes late.
-        fading = count - ends
-        spectra[..., ends:] *= 1.0 - smooth_step(np.arange(1, fading + 1) / fading)
+    # What a sharp cut discards would ring on, and the window raises what comes late.
+    fading = count - ends
+    spectra[..., ends:] *= 1.0 - smooth_step(np.arange(1, fading + 1) / fading)
     if truncation is None:
         kept = min(found.negligible_from(found.added, TRUNCATION.negligible, magnitudes), count)
         # Where the response to rest alone is kept, some frequency below the next.
         truncation = max(kept - 1, 0.5 * (kept > 0)) / line.period
     cut = Truncation(frequency=truncation)
     cut = replace(cut, error=found.error(cut.untouched(line.omega()), count))
-    return Excited(line, spectra, cut, highest, found.shares(line.padded // 2 + 1, count))
+    return Excited(
+        line=line,
+        spectra=spectra,
+        truncation=cut,
+        finest=finest or stated is not None,
+        beyond=_beyond(found, ends, count),
+        not_shown=found.shares(line.padded // 2 + 1, count),
+    )
+
+
+def _beyond(found: Influence, ends: int, count: int) -> FloatArray:
+    """Give the ratio of what is not solved to the highest octave that is, of each output, relative L2."""
+    lines = found.lines
+    not_solved = found.shares(ends, lines) ** 2
+    not_sampled = SAMPLING.beyond * found.shares(int(SAMPLING.quarter * lines), lines) ** 2
+    octave = found.shares(count // 2, count)
+    return np.sqrt(np.divide(not_solved + not_sampled, octave**2, out=np.zeros_like(octave), where=octave > 0))

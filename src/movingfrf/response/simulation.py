@@ -12,7 +12,7 @@ from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.accuracy import past_the_end, truncated, unresolved
 from movingfrf.response.line import Given, Line, require_record
-from movingfrf.response.sampling import excited
+from movingfrf.response.sampling import SAMPLING, excited
 from movingfrf.response.solve import solve
 from movingfrf.response.survey import survey
 from movingfrf.response.system import System
@@ -32,9 +32,9 @@ class Settling:
 
     # To what the vehicle's slowest vibration should have decayed at the end of the padding.
     decayed: float = 3e-2  # [1e-3 to 3e-2]
-    # The padding for it is at most so many times the duration, or so many steps.
+    # The padding for it is at most so many times the duration, or so long.
     durations: float = 4.0  # [2 to 16]
-    steps: int = 2**16  # [2**14 to 2**18]
+    longest: float = 60.0  # [s; 15 to 300]
 
 
 SETTLING = Settling()
@@ -174,19 +174,28 @@ def driven(
     system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)
     progress("steady state", 0.0)
     surveyed = survey(system)
-    progress("sampling", 0.0)
-    # One case.
-    driven_by = excited(
-        system,
-        lambda line: Given(excitation.elevation(journey.speed * line.instants)[None]),
-        line_of(journey, vehicle),
-        excitation.station / journey.speed,
-        truncation=journey.truncation,
-        solved_step=journey.solved_step,
-    )
-    response = solve(system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress)
-    progress("histories", 0.0)
-    histories = response.histories(driven_by.line)
+    line, negligible = line_of(journey, vehicle), SAMPLING.negligible
+    for _ in range(SAMPLING.rounds):
+        progress("sampling", 0.0)
+        # One case.
+        driven_by = excited(
+            system,
+            lambda line: Given(excitation.elevation(journey.speed * line.instants)[None]),
+            line,
+            excitation.station / journey.speed,
+            truncation=journey.truncation,
+            solved_step=journey.solved_step,
+            negligible=negligible,
+        )
+        response = solve(
+            system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress
+        )
+        progress("histories", 0.0)
+        histories = response.histories(driven_by.line)
+        left_out = unresolved(driven_by, response, histories)
+        if driven_by.finest or left_out <= SAMPLING.tolerated:
+            break
+        negligible *= max(0.5 * SAMPLING.tolerated / left_out, 0.01)
     force, deflection, motion, acceleration = histories
     cut = truncated(system, driven_by, response, histories)
     guessed = 0.0
@@ -200,7 +209,7 @@ def driven(
         *surveyed.findings,
         *find.not_decayed("vehicle's motion", motion.wrapped, motion.values),
         *find.beyond_truncation(cut.frequency, cut.error),
-        *find.unresolved(unresolved(driven_by, response, histories), driven_by.step),
+        *find.unresolved(left_out, driven_by.step),
         *find.not_shown(driven_by.not_shown, system.outputs, journey.time_step),
         *find.profile_ends(guessed, excitation.guessed),
         *find.grade_taken(excitation.grade),
@@ -257,7 +266,7 @@ def line_of(journey: Journey, vehicle: Vehicle) -> Line:
         If memory would not hold the result.
     """
     slowest = float((-vehicle.poles.real).min(initial=np.inf))
-    longest = max(SETTLING.durations * journey.duration, SETTLING.steps * journey.time_step)
+    longest = max(SETTLING.durations * journey.duration, SETTLING.longest)
     settling = min(-np.log(SETTLING.decayed) / slowest, longest) if slowest > 0 else longest
     channels = len(vehicle.contacts) + len(vehicle.dof_names)
     require_record(journey.duration, settling, journey.time_step, channels)
