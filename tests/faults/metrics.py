@@ -99,12 +99,12 @@ FAULTS = [
     Fault("load that hangs wears", "metrics/loads.py", "max(static[contact], 0.0)", "static[contact]"),
     Fault("points beyond memory", "metrics/loads.py", "(last - first) / spacing * (bytes", "0 * (bytes"),
     Fault("window longer than the road", "metrics/iri.py", "elif shortest > length:", "elif False:"),
-    Fault("feet felt like the seat", "metrics/comfort.py", "[ISO_2631.seated[name] for name in rms]", "1.0"),
+    Fault("feet felt like the seat", "metrics/comfort.py", "[ISO_2631.seated[name] for name in felt]", "1.0"),
     Fault(
         "histories mixed",
         "metrics/comfort.py",
-        "np.reshape(values, (shape[0], -1))",
-        "np.reshape(values, (-1, 1))",
+        "array.reshape(len(array), -1)",
+        "array.reshape(-1, 1)",
     ),
     # Profiles from files.
     Fault(

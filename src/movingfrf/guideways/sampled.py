@@ -77,25 +77,19 @@ class SampledGuideway:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             offsets = check.array("offsets", self.offsets, "m", (None,))
             response = check.array("response", self.response, "m/(N s)", (None, offsets.size))
             check.positive("time_step", self.time_step, "s")
             check.finite("speed", self.speed, "m/s")
             if (self.across is None) != (self.source_across is None):
                 check.refuse("across", "and source_across must be given both or neither [m]")
-            beside = [
-                None if value is None else check.array(name, value, "m", (offsets.size,))
-                for name, value in (("across", self.across), ("source_across", self.source_across))
-            ]
-            if not self.critical_speed > 0:
-                check.refuse("critical_speed", f"must be positive, got {self.critical_speed!r} m/s")
+            for name, value in (("across", self.across), ("source_across", self.source_across)):
+                if value is not None:
+                    check.array(name, value, "m", (offsets.size,))
+            check.positive_or_infinite("critical_speed", self.critical_speed, "m/s")
             if not check.faults and (len(response) < 2 or not offsets.size):
                 check.refuse("response", "must hold at least two samples and one offset")
-        object.__setattr__(self, "offsets", offsets)
-        object.__setattr__(self, "response", response)
-        object.__setattr__(self, "across", beside[0])
-        object.__setattr__(self, "source_across", beside[1])
 
     def __repr__(self) -> str:
         """Say which record it is: its size, and a sum over its bytes in place of them."""

@@ -160,9 +160,8 @@ def weighting(name: str, frequency: ArrayLike) -> ComplexArray:
     """
     with checking() as check:
         check_weighting(check, name)
-        shape = np.shape(frequency)
-        f = check.array("frequency", np.ravel(frequency), "Hz", (None,))
-    chosen, p = WEIGHTINGS[name], 2j * np.pi * f.reshape(shape)
+        f = check.array("frequency", frequency, "Hz", None)
+    chosen, p = WEIGHTINGS[name], 2j * np.pi * f
     low, high = chosen.band
     factor = chosen.gain * (p / (2 * np.pi * low)) ** 2 / _second_order(p, low) / _second_order(p, high)
     if chosen.transition:
@@ -209,7 +208,7 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk") -> Flo
 
     with checking() as check:
         check_weighting(check, name)
-        check.positive("time_step", time_step, "s")
+        time_step = check.positive("time_step", time_step, "s")
         values, shape = _histories(check, "acceleration", acceleration, "m/s²")
     # What is left of a weighting's memory at the end of the padding [1e-15 to 1e-7].
     forgotten = 1e-9
@@ -248,8 +247,8 @@ def running_rms(values: ArrayLike, time_step: float, window: float = ISO_2631.ru
     ISO 2631-1:1997, 6.3.1, equation (2).
     """
     with checking() as check:
-        check.positive("time_step", time_step, "s")
-        check.positive("window", window, "s")
+        time_step = check.positive("time_step", time_step, "s")
+        window = check.positive("window", window, "s")
         histories, shape = _histories(check, "values", values, "any unit")
     squares = histories**2
     energy = np.concatenate([np.zeros_like(squares[:1]), np.cumsum(squares, axis=0)])
@@ -284,7 +283,7 @@ def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
     ISO 2631-1:1997, 6.3.2, equation (5).
     """
     with checking() as check:
-        check.positive("time_step", time_step, "s")
+        time_step = check.positive("time_step", time_step, "s")
         histories, shape = _histories(check, "values", values, "m/s²")
     return np.asarray((np.sum(histories**4, axis=0) * time_step) ** 0.25).reshape(shape[1:])
 
@@ -378,8 +377,8 @@ def whole_body_vibration(
     (0.366, ())
     """
     with checking() as check:
-        check.array("acceleration", acceleration, "m/s²", (None,))
-        check.positive("time_step", time_step, "s")
+        acceleration = check.array("acceleration", acceleration, "m/s²", (None,))
+        time_step = check.positive("time_step", time_step, "s")
     first = samples_before(since, time_step, np.size(acceleration))
     values = weighted(acceleration, time_step, weighting)[first:]
     return Comfort(
@@ -415,7 +414,7 @@ def samples_before(since: float, time_step: float, count: int) -> int:
         If the instant is negative, or beyond the record.
     """
     with checking() as check:
-        check.not_negative("since", since, "s")
+        since = check.not_negative("since", since, "s")
         if not check.faults and since > (count - 1) * time_step:
             check.refuse(
                 "since", f"must lie within the record, {(count - 1) * time_step:.6g} s at most, got {since!r} s"
@@ -452,7 +451,7 @@ def comfort_reactions(rms: float) -> tuple[str, ...]:
     (('a little uncomfortable',), ('fairly uncomfortable', 'uncomfortable'))
     """
     with checking() as check:
-        check.not_negative("rms", rms, "m/s²")
+        rms = check.not_negative("rms", rms, "m/s²")
     return tuple(name for name, least, most in ISO_2631.reactions if least <= rms < most)
 
 
@@ -487,7 +486,7 @@ def vibration_total(rms: ArrayLike, factors: ArrayLike = 1.0) -> float:
     """
     with checking() as check:
         values = check.array("rms", rms, "m/s²", (None,))
-        scales = check.array("factors", factors, "1", (values.size,) if np.ndim(factors) else ())
+        scales = check.spread("factors", factors, "1", values.shape)
     return float(np.sqrt(np.sum((scales * values) ** 2)))
 
 
@@ -527,11 +526,11 @@ def seated_total(rms: Mapping[str, float]) -> float:
             check.refuse(
                 "rms", f"must give accelerations by place and axis, as {{'seat z': 0.5}}, got {shown(rms)}"
             )
-        for name, value in given:
+        for name in dict(given):
             if name not in ISO_2631.seated:
                 check.refuse("rms", f"must be of {', '.join(ISO_2631.seated)}, got {shown(name)}")
-            check.not_negative(f"rms[{name!r}]", value, "m/s²")
-    return vibration_total(list(rms.values()), [ISO_2631.seated[name] for name in rms])
+        felt = {name: check.not_negative(f"rms[{name!r}]", value, "m/s²") for name, value in given}
+    return vibration_total(list(felt.values()), [ISO_2631.seated[name] for name in felt])
 
 
 def _second_order(p: ComplexArray, frequency: float, quality: float = np.sqrt(0.5)) -> ComplexArray:
@@ -555,8 +554,8 @@ def check_weighting(check: Checks, name: object) -> None:
 
 def _histories(check: Checks, name: str, values: ArrayLike, unit: str) -> tuple[FloatArray, tuple[int, ...]]:
     """Histories side by side (time, channel), and the shape in which they came."""
-    shape = np.shape(values)
-    if not np.prod(shape, dtype=int) or not shape:
-        check.refuse(name, f"must hold at least one sample, in a first axis over time, got shape {shape}")
-        return np.ones((1, 1)), shape
-    return check.array(name, np.reshape(values, (shape[0], -1)), unit, (None, None)), shape
+    array = check.array(name, values, unit, None)
+    if not array.size or not array.ndim:
+        check.refuse(name, f"must hold at least one sample, in a first axis over time, got shape {array.shape}")
+        return np.ones((1, 1)), array.shape
+    return array.reshape(len(array), -1), array.shape

@@ -173,7 +173,9 @@ def _segments(
             check.refuse("profile", f"must be at least {PROCEDURE.start:g} m long, got {length:g} m")
         elif shortest > length:
             check.refuse("average", f"must leave something of the profile's {length:g} m, got {average:g} m")
-        elif segment is not None and not shortest <= check.positive("segment", segment, "m") <= length * (1 + 1e-9):
+        elif segment is not None and not shortest <= (
+            segment := check.positive("segment", segment, "m")
+        ) <= length * (1 + 1e-9):
             check.refuse(
                 "segment",
                 f"must be at least {shortest:g} m and at most the profile's {length:g} m, got {segment!r} m",

@@ -76,7 +76,7 @@ class IsotropicCoherence:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             if check.positive("waviness", self.waviness, "1") > LARGEST_WAVINESS:
                 check.refuse("waviness", f"must be at most {LARGEST_WAVINESS:g}, got {self.waviness!r}")
 
@@ -131,7 +131,7 @@ class ExponentialCoherence:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.not_negative("decay", self.decay, "1")
 
     def between(self, spatial_frequency: FloatArray, apart: FloatArray) -> FloatArray:
