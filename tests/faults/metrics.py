@@ -33,6 +33,13 @@ FAULTS = [
         "len(values) + int(np.ceil(memory / time_step))",
         "len(values)",
     ),
+    Fault("gravity weighted", "metrics/comfort.py", "return values - middle - np", "return values - np"),
+    Fault(
+        "drift weighted",
+        "metrics/comfort.py",
+        "- np.multiply.outer(time, slope), middle",
+        "+ 0.0 * np.multiply.outer(time, slope), middle",
+    ),
     Fault(
         "dose of squares",
         "metrics/comfort.py",
@@ -99,7 +106,7 @@ FAULTS = [
     Fault("load that hangs wears", "metrics/loads.py", "max(static[contact], 0.0)", "static[contact]"),
     Fault("points beyond memory", "metrics/loads.py", "(last - first) / spacing * (bytes", "0 * (bytes"),
     Fault("window longer than the road", "metrics/iri.py", "elif shortest > length:", "elif False:"),
-    Fault("feet felt like the seat", "metrics/comfort.py", "[ISO_2631.seated[name] for name in felt]", "1.0"),
+    Fault("feet felt like the seat", "metrics/totals.py", "[ISO_2631.seated[name] for name in felt]", "1.0"),
     Fault(
         "histories mixed",
         "metrics/comfort.py",
