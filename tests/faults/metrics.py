@@ -16,6 +16,13 @@ FAULTS = [
         "- 1, 0), (round(window) ** 2 - 1) / 12",
     ),
     Fault("average counted twice", "metrics/iri.py", "(window**2 - 1) / 12", "window**2 / 12"),
+    Fault(
+        "spline no finer than the stations",
+        "metrics/iri.py",
+        "pieces = int(np.ceil(step / PROCEDURE.fine))",
+        "pieces = 1",
+    ),
+    Fault("cost of a step turned", "metrics/iri.py", '"lower" if cost < 0', '"lower" if cost > 0'),
     Fault("car starts level", "metrics/iri.py", "zi=[-keep * gain * start]", "zi=[0.0 * gain]"),
     Fault("one mode of the golden car", "metrics/iri.py", "found += 2 * driven.real", "found = 2 * driven.real"),
     Fault(

@@ -10,7 +10,7 @@ from movingfrf._basics.arrays import FloatArray, finite
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.welch import Spectra
 from movingfrf._basics.wording import evenly_spread, named_paths
-from movingfrf.metrics.iri import PROCEDURE, iri
+from movingfrf.metrics.iri import PROCEDURE, coarse_for_index, straight_index
 from movingfrf.metrics.spectra import path_spectra
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
 from movingfrf.roughness.profile import Profile
@@ -162,6 +162,8 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
     estimated = path_spectra(described.columns, step)
     if reason:
         findings.append(reason)
+    elif indices:
+        findings += [f"{_sentence(finding.message)}." for finding in coarse_for_index(described)]
     paths = []
     for n, number in enumerate(numbers):
         progress("paths", n / len(numbers))
@@ -277,7 +279,7 @@ def _indices(even: Profile, step: float, progress: Progress) -> tuple[dict[float
     found = {}
     for n, span in enumerate(wanted):
         progress("roughness index", n / len(wanted))
-        found[span] = iri(even, segment=span or None)
+        found[span] = straight_index(even, span or None)
     return found, ""
 
 
