@@ -203,6 +203,7 @@ CALLS = {
     "density": lambda n: mf.IsoRoad(**n(dict(roughness=2**-16, waviness=2.125))).density(n([0.125, 1.375])),
     "variance": lambda n: mf.FraTrack.of_class(6, **n(dict(band=(2**-7, 2.0)))).variance_below(n([0.125, 1.375])),
     "isotropic": lambda n: mf.IsotropicCoherence(waviness=n(2.5)),
+    "between": lambda n: mf.ExponentialCoherence(decay=n(2.5)).between(n([0.1, 1.5]), n(1.5)),
     "third_octave_levels": lambda n: mf.third_octave_levels(mf.iso3095_limit(), n([0.125, 0.0078125])),
     "profile": lambda n: mf.Profile(n([0.0, 0.125, 0.25, 0.375]), n([[0.125, 0.25]] * 4), across=n((0.8, -0.8))),
     "selected": lambda n: mf.selected(TWO, paths=n([1])),
@@ -372,6 +373,9 @@ MASKED = [
         lambda: mf.IsoRoad.of_class("A").density(masked([0.1, 1.0], 1)),
         "spatial_frequency .* masked value at index 1",
     ),
+    (lambda: mf.IsotropicCoherence().between(masked([0.1, 1.0], 1), 1.5), "spatial_frequency .* value at index 1"),
+    (lambda: mf.ExponentialCoherence(decay=1.0).between([0.1], masked([0.1, 1.0], 1)), "apart .* value at index 1"),
+    (lambda: RINGING.columns(masked([0.0], 0)), "ahead .* got a masked value at index 0"),
     (lambda: mf.third_octave_levels(mf.iso3095_limit(), masked([0.1], 0)), "wavelength .* masked value at index 0"),
     (lambda: mf.realise(mf.IsoRoad.of_class("A"), length=40.0, across=masked([1, 0], 1)), "across .* index 1"),
     (
@@ -448,9 +452,8 @@ def thrown_away(path: Path) -> list[str]:
         function = node
         while not isinstance(function, ast.FunctionDef):
             function = above[function]
-        stores = any(
-            argument.arg == "check" for argument in function.args.args
-        ) or "checking(spectrum)" in ast.unparse(function)
+        given = any(argument.arg == "check" for argument in function.args.args)
+        stores = given or re.search(r"checking\(\w", ast.unparse(function))
         if not stores and not isinstance(node, (ast.Assign, ast.NamedExpr, ast.Return)):
             found.append(f"{path.name}:{call.lineno}: {call.args[1].id}")
     return found

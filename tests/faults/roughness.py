@@ -68,8 +68,8 @@ FAULTS = [
     Fault(
         "coherence over half of the distance",
         "roughness/spectra/coherence.py",
-        "z = 2 * np.pi * np",
-        "z = np.pi * np",
+        "z = 2 * np.pi * _products",
+        "z = np.pi * _products",
     ),
     Fault(
         "waviness for the order",

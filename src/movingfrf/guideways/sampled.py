@@ -126,7 +126,9 @@ class SampledGuideway:
         ValueError
             If an offset was not recorded.
         """
-        places = np.broadcast_arrays(*(np.asarray(place, float) for place in (ahead, across, source_across)))
+        named = {"ahead": ahead, "across": across, "source_across": source_across}
+        with checking() as check:
+            places = np.broadcast_arrays(*(check.array(name, place, "m", None) for name, place in named.items()))
         wide = () if self.across is None else (self.across, self.source_across)
         known = [np.asarray(recorded, float) for recorded in (self.offsets, *wide)]
         asked = len(known)
@@ -136,7 +138,7 @@ class SampledGuideway:
         nearest = apart.argmin(axis=-1)
         missing = apart.min(axis=-1) > RECORD.same_place
         if missing.any():
-            names = ("ahead", "across", "source_across")[:asked]
+            names = list(named)[:asked]
             recorded = np.stack(known, axis=-1).squeeze(axis=-1 if asked == 1 else ()).tolist()
             wanted = [float(place[missing][0]) for place in places[:asked]]
             raise ValueError(
