@@ -37,6 +37,71 @@ def test_class_and_waviness_of_a_known_road(letter, waviness):
     assert path.fit.road_class == letter or waviness != 2.0
 
 
+X = 0.05 * np.arange(8000)
+UNEVEN = np.sort(X + np.random.default_rng(0).uniform(0, 0.02, 8000))
+STRAIGHT = {
+    "level": (X, 0.0 * X),
+    "level, far up": (X, 583.123 + 0.0 * X),
+    "a ramp": (X, 0.06 * X),
+    "a ramp, far up": (X, 583.0 + 0.06 * X),
+    "downhill, far out": (5e5 + X, 1234.5 - 0.1 * (5e5 + X)),
+    "added up": (X, 583.0 + np.cumsum(np.full(X.size, 0.003))),
+    "uneven stations": (UNEVEN, 583.0 + 0.03 * UNEVEN),
+    "whole millimetres": (X, np.round(0.0123 * X, 3)),
+    "whole micrometres, uneven stations": (UNEVEN, np.round(583 + 0.0123 * UNEVEN, 6)),
+    "single precision": (X, (583.0 + 0.0123 * X).astype(np.float32)),
+}
+
+
+@pytest.mark.parametrize("name", STRAIGHT)
+def test_a_straight_line_has_no_class(name):
+    """What is left of it is the rounding of its numbers: 7e-25 m³ were class A."""
+    profile = mf.Profile(*STRAIGHT[name])
+    found = mf.describe_profile(profile)
+    (path,) = found.paths
+    assert (path.fit.road_class, path.fit.reason[:45]) == ("", "the profile is level or straight but for roun")
+    assert not path.density.size
+    assert any("No class: the profile is level or straight but for rounding" in words for words in found.findings)
+    assert as_dict(found)["paths"][0]["iso_8608_class"] is None
+    along = profile.stations
+    slope = (profile.elevation[-1] - profile.elevation[0]) / (along[-1] - along[0])
+    assert path.slope == pytest.approx(slope, abs=1e-5)
+    render(found, understood="", title="a line")
+
+
+@pytest.mark.parametrize("datum", [0.0, 583.0])
+@pytest.mark.parametrize("roughness", [1e-12, 16e-6])
+def test_what_is_rough_on_a_ramp_keeps_its_class(datum, roughness):
+    """Also where it is micrometres, as on rails."""
+    road = mf.realise(mf.IsoRoad(roughness=roughness), length=400.0, seed=1)
+    z = datum + 0.06 * road.stations + road.elevation
+    (path,) = mf.describe_profile(mf.Profile(road.stations, z)).paths
+    assert path.fit.road_class == "A"
+    assert path.fit.roughness_at_two == pytest.approx(roughness, rel=0.3)
+    assert path.slope == pytest.approx(0.06, abs=1e-3)
+
+
+def test_a_mean_slope_is_named(tmp_path, capsys):
+    """By the command, its JSON and its page, and by what is said of a scenario."""
+    road = mf.realise(mf.IsoRoad.of_class("A"), length=400.0, seed=1)
+    columns = np.stack([road.elevation + 0.06 * road.stations, road.elevation - 0.01 * road.stations], axis=1)
+    mf.write_profile(mf.Profile(road.stations, columns), tmp_path / "road.csv")
+    assert main(["profile", str(tmp_path / "road.csv"), "-o", str(tmp_path / "out")]) == 0
+    out = capsys.readouterr().out
+    assert "mean slope" in out
+    assert re.search(r"\b6\.0\d\b.*\n.* -1\.0\d\b", out)
+    paths = json.loads((tmp_path / "out" / "profile.json").read_text(encoding="utf-8"))["paths"]
+    assert [path["mean_slope_percent"] for path in paths] == pytest.approx([6.0, -1.0], abs=0.1)
+    scenario = tmp_path / "case.toml"
+    text = (Path(__file__).parents[1] / "examples" / "paved_road.toml").read_text(encoding="utf-8")
+    road_and_run = (
+        '[roughness]\nkind = "profile"\nfile = "road.csv"\n[run]\nspeed = 20.0\nduration = 5.0\nstart = 5.0\n'
+    )
+    scenario.write_text(text.partition("[roughness]")[0] + road_and_run, encoding="utf-8")
+    assert main(["check", str(scenario)]) == 0
+    assert re.search(r"mean slope +6\.0\d %, -1\.0\d %", capsys.readouterr().out)
+
+
 @pytest.mark.parametrize("count", [999, 1000, 20_001, 30_000])
 def test_spectra_are_those_of_welch(count):
     """By another program, up to rounding; the coherence, from its cross-spectra summed over the bands."""
@@ -199,7 +264,10 @@ def test_ten_metres_have_no_class():
     block = mf.read_profile(DATA / "belgian_block.crg", across=[0.75]).profile
     found = mf.describe_profile(block)
     assert found.paths[0].fit.road_class == ""
-    assert any(finding.startswith("No class: the profile is level, or too short") for finding in found.findings)
+    assert any(
+        finding.startswith("No class: the profile is level or straight but for rounding")
+        for finding in found.findings
+    )
     assert as_dict(found)["paths"][0]["iso_8608_class"] is None
     render(found, understood="", title="x")
 

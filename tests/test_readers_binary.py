@@ -102,6 +102,29 @@ def test_what_matlab_stores_as_numbers_and_what_netcdf_packs_into_them(tmp_path)
     assert profile.elevation == pytest.approx(0.01 * np.array([6.0, 11.0, 16.0, 21.0, 26.0, 31.0]))
 
 
+@pytest.mark.parametrize(
+    "said",
+    [
+        {"missing_value": np.array([-999, -998], "i2")},
+        {"missing_value": np.int16(-999), "_FillValue": np.int16(-1)},
+        {"valid_range": np.array([0, 100], "i2")},
+        {"valid_min": np.int16(0)},
+        {"valid_max": np.int16(100), "_FillValue": np.int16(-999)},
+    ],
+    ids=str,
+)
+def test_what_netcdf_says_is_no_value_is_none(tmp_path, said):
+    """All that makes a masked array of it in other readers."""
+    import h5py
+
+    with h5py.File(tmp_path / "other.nc", "w") as file:
+        file["x"] = np.arange(6.0)
+        file["z"] = np.array([10, 20, -999, 40, 50, 60], "i2")
+        file["z"].attrs.update(said)
+    with pytest.raises(ValueError, match=r"value 3: no elevation at 2 m"):
+        mf.read_profile(tmp_path / "other.nc")
+
+
 def test_an_hdf5_library_that_hangs_or_crashes_is_not_waited_for(tmp_path, monkeypatch):
     """As it does on some damaged files; too rare to keep one that does so with every version of it."""
     mf.write_profile(fuzz_readers.profile(), tmp_path / "road.nc")

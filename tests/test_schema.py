@@ -162,7 +162,7 @@ def test_a_value_of_another_type_is_a_fault_and_never_a_defect():
     }
     slabs = tomllib.loads(IN_ORDER["roughness faulted_slabs"])
     slabs["roughness"]["spacing"] = "5"
-    assert faults_of(slabs) == {"roughness.spacing": "must be a number [m], got '5'"}
+    assert faults_of(slabs) == {"roughness.spacing": "must be a positive number [m], got '5'"}
 
 
 def test_every_kind_and_key_is_described():

@@ -6,7 +6,7 @@ from functools import reduce
 
 import numpy as np
 import pytest
-from scipy.signal import lsim
+from scipy.signal import lsim, residue
 
 import movingfrf as mf
 from movingfrf.metrics.comfort import WEIGHTINGS, Comfort
@@ -114,6 +114,67 @@ def test_measures_of_a_sine():
     assert found.mtvv == pytest.approx(weighted / np.sqrt(2), rel=0.02)
     assert found.crest_factor == pytest.approx(np.sqrt(2), rel=0.1)
     assert found.exceeded == ()
+
+
+def begun(name, amplitude, frequency, time):
+    """Weight a sine that begins at zero, in closed form: partial fractions of W(p) A ω/(p² + ω²)."""
+    above, below = polynomials(name)
+    omega = 2 * np.pi * frequency
+    shares, poles, _ = residue(amplitude * omega * above, np.polymul(below, [1.0, 0.0, omega**2]))
+    return (shares[:, None] * np.exp(np.outer(poles, time))).sum(axis=0).real
+
+
+GRAVITY_AND_MORE = [(0.0, 0.0), (9.81, 0.0), (-9.81, 0.3), (0.0, -2.0), (1e4, 0.0)]
+
+
+@pytest.mark.parametrize(("bias", "drift"), GRAVITY_AND_MORE)
+def test_a_recording_does_not_begin_as_a_step(bias, drift):
+    """0.5 √2 sin(2π 5 t) on a bias and a drift, 10 s at 256 Hz."""
+    time = np.arange(2560) / 256
+    shaken = np.sqrt(0.5) * np.sin(2 * np.pi * 5 * time)
+    found = mf.whole_body_vibration(shaken + bias + drift * time, 1 / 256)
+    assert (found.rms, found.mtvv, found.vdv) == pytest.approx((0.518, 0.521, 1.02), abs=5e-4)
+    truth = begun("Wk", np.sqrt(0.5), 5.0, time)
+    # The line that fits a sine of fifty waves best is 1 % of it.
+    assert found.rms == pytest.approx(np.sqrt(np.mean(truth**2)), rel=5e-4)
+    assert found.mtvv == pytest.approx(np.sqrt(np.convolve(truth**2, np.ones(256), "valid").max() / 256), rel=5e-4)
+    assert found.vdv == pytest.approx((np.sum(truth**4) / 256) ** 0.25, rel=5e-4)
+    assert found.bias == pytest.approx(bias + drift * time.mean(), abs=1e-12 + 1e-15 * abs(bias))
+    assert found.drift == pytest.approx(drift, abs=3e-3)
+    assert f"{found.bias:.3g} m/s²" in found.taken_out
+    assert "rad/s²" in mf.whole_body_vibration(shaken + 1, 1 / 256, "We").taken_out
+    assert "cannot tell" not in found.taken_out
+
+
+@pytest.mark.parametrize("name", ["Wk", "Wd", "We", "Wf"])
+@pytest.mark.parametrize(("seconds", "rate"), [(60.0, 256), (4.0, 16), (1.0, 64), (0.5, 32)])
+def test_a_line_makes_no_difference_to_a_recording(name, seconds, rate):
+    """However short and coarse; of one too short for the weighting it is said that they look alike."""
+    time = np.arange(round(seconds * rate)) / rate
+    shaken = np.random.default_rng(3).standard_normal(time.size)
+    bare = mf.whole_body_vibration(shaken, 1 / rate, name)
+    found = mf.whole_body_vibration(shaken + 9.81 - 0.7 * time, 1 / rate, name)
+    for measure in ("rms", "peak", "mtvv", "vdv"):
+        assert getattr(found, measure) == pytest.approx(getattr(bare, measure), rel=1e-9)
+    weighted = mf.weighted(np.stack([shaken, shaken + 9.81], axis=1), 1 / rate, name, recorded=True)
+    np.testing.assert_allclose(weighted[:, 1], weighted[:, 0], rtol=0, atol=1e-12)
+    assert np.abs(weighted).max() == pytest.approx(bare.peak, rel=1e-9)
+    assert ("cannot tell" in found.taken_out) == (seconds < 1 / WEIGHTINGS[name].band[0])
+
+
+def test_of_what_is_computed_nothing_is_taken_out():
+    """A vehicle whose acceleration has a mean keeps it: a recording of the same would not."""
+    car = mf.quarter_car(
+        body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4, suspension_damping=1.5e3, tyre_stiffness=2e5
+    )
+    hump = mf.bump(height=0.02, width=8.0, at=8.0, length=60.0)
+    result = mf.simulate(mf.RigidGuideway(), car, hump, speed=10.0, duration=2.0, blend=0.0)
+    body = result.acceleration.sel(dof="body").values
+    felt = mf.comfort(result, "body")
+    assert felt.taken_out == ""
+    assert felt.rms == pytest.approx(np.sqrt(np.mean(mf.weighted(body, 1e-3) ** 2)), rel=1e-12)
+    assert next(m.value for m in mf.measures(result) if m.name == "weighted rms") == felt.rms
+    assert mf.whole_body_vibration(body, 1e-3).rms != pytest.approx(felt.rms, rel=1e-3)
 
 
 def test_running_rms_and_dose_of_a_burst():
@@ -231,6 +292,7 @@ def test_comfort_of_a_result():
         (lambda: mf.vibration_dose(3.0, 1e-3), "values must hold at least one sample"),
         (lambda: mf.comfort(None, "body"), "result must be the coupled response of a vehicle"),
         (lambda: mf.whole_body_vibration([[1.0]], 1e-3), "acceleration must have shape"),
+        (lambda: mf.whole_body_vibration([1.0, 2.0], 1e-3), r"at least three samples \[m/s²\], got 2"),
         (lambda: mf.seated_total({"seat z": 1.0, "nose x": 1.0}), "rms must be of seat x, .*, got 'nose x'"),
         (lambda: mf.seated_total({"seat z": -1.0}), r"rms\['seat z'\] must not be negative"),
         (lambda: mf.seated_total([1.0]), "rms must give accelerations by place and axis"),

@@ -34,6 +34,7 @@ SELECTION = [
     "tests/laws/test_random_statistics.py",
     "tests/test_roads.py",
     "tests/test_random_command.py",
+    "tests/test_door.py",
 ]
 
 # These first where the fault lies in files of profiles, what is done to them and what is said of them.
@@ -97,6 +98,8 @@ AT_A_TIME, LIMIT = 2, 600
 def selection(fault: Fault | None) -> list[str]:
     """List what runs against a fault: first the tests that lie next to it."""
     file = fault.file if fault else ""
+    if file == "_basics/checks.py":
+        return ["tests/test_door.py", *SELECTION]
     independent = file.startswith(("stepping/", "guideways/sampled"))
     if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE

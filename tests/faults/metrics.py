@@ -16,6 +16,13 @@ FAULTS = [
         "- 1, 0), (round(window) ** 2 - 1) / 12",
     ),
     Fault("average counted twice", "metrics/iri.py", "(window**2 - 1) / 12", "window**2 / 12"),
+    Fault(
+        "spline no finer than the stations",
+        "metrics/iri.py",
+        "pieces = int(np.ceil(step / PROCEDURE.fine))",
+        "pieces = 1",
+    ),
+    Fault("cost of a step turned", "metrics/iri.py", '"lower" if cost < 0', '"lower" if cost > 0'),
     Fault("car starts level", "metrics/iri.py", "zi=[-keep * gain * start]", "zi=[0.0 * gain]"),
     Fault("one mode of the golden car", "metrics/iri.py", "found += 2 * driven.real", "found = 2 * driven.real"),
     Fault(
@@ -32,6 +39,13 @@ FAULTS = [
         "metrics/comfort.py",
         "len(values) + int(np.ceil(memory / time_step))",
         "len(values)",
+    ),
+    Fault("gravity weighted", "metrics/comfort.py", "return values - middle - np", "return values - np"),
+    Fault(
+        "drift weighted",
+        "metrics/comfort.py",
+        "- np.multiply.outer(time, slope), middle",
+        "+ 0.0 * np.multiply.outer(time, slope), middle",
     ),
     Fault(
         "dose of squares",
@@ -99,12 +113,12 @@ FAULTS = [
     Fault("load that hangs wears", "metrics/loads.py", "max(static[contact], 0.0)", "static[contact]"),
     Fault("points beyond memory", "metrics/loads.py", "(last - first) / spacing * (bytes", "0 * (bytes"),
     Fault("window longer than the road", "metrics/iri.py", "elif shortest > length:", "elif False:"),
-    Fault("feet felt like the seat", "metrics/comfort.py", "[ISO_2631.seated[name] for name in rms]", "1.0"),
+    Fault("feet felt like the seat", "metrics/totals.py", "[ISO_2631.seated[name] for name in felt]", "1.0"),
     Fault(
         "histories mixed",
         "metrics/comfort.py",
-        "np.reshape(values, (shape[0], -1))",
-        "np.reshape(values, (-1, 1))",
+        "array.reshape(len(array), -1)",
+        "array.reshape(-1, 1)",
     ),
     # Profiles from files.
     Fault(

@@ -28,7 +28,7 @@ FAULTS = [
     Fault(
         "content beside the band",
         "roughness/spectra/spectrum.py",
-        "np.where(n == spatial_frequency, self._formula(n), 0.0)",
+        "np.where(n == asked, self._formula(n), 0.0)",
         "self._formula(n)",
     ),
     Fault(
@@ -68,8 +68,8 @@ FAULTS = [
     Fault(
         "coherence over half of the distance",
         "roughness/spectra/coherence.py",
-        "z = 2 * np.pi * np",
-        "z = np.pi * np",
+        "z = 2 * np.pi * _products",
+        "z = np.pi * _products",
     ),
     Fault(
         "waviness for the order",
@@ -101,7 +101,9 @@ FAULTS = [
         "rng.gamma(1 / spread, spread,",
         "rng.gamma(1 / spread, spread / 2,",
     ),
-    Fault("segments of a step", "roughness/realisation.py", "* (step / segment) *", "*"),
+    Fault("what a mask hides", "_basics/checks.py", "uncovered(value) if masks(value) else value", "value"),
+    Fault("true is one", "_basics/checks.py", "if kinds & {bool, np.bool_}:", "if False:"),
+    Fault("segments of a step", "roughness/realisation.py", "* (ask.step / segment) *", "*"),
     Fault(
         "a flat lifts the wheel",
         "roughness/irregularities.py",
@@ -183,6 +185,15 @@ FAULTS = [
     Fault("sphere for the ellipsoid", "roughness/formats/gpx.py", "6.694_379_990_141e-3", "0.0"),
     Fault("paths between sections", "roughness/files.py", "rights + share * (lefts - rights)", "rights"),
     Fault("formats not told", "roughness/files.py", ".replace(words, instead)", '.replace(words, "")'),
+    Fault(
+        "missing values of netCDF read",
+        "roughness/formats/hdf_child.py",
+        '*numbers_attribute(item, "missing_value")',
+        "*()",
+    ),
+    Fault("class of a straight line", "roughness/straight.py", "most <= _rounding(column)", "most <= FLAT"),
+    Fault("digits of a file are roughness", "roughness/straight.py", "max(2 * resolution(elevation), ", "max("),
+    Fault("slope per station", "roughness/straight.py", "/ (along @ along)", "/ along.size"),
     Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
     Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
     Fault("high pass of first order", "roughness/steps/base.py", "order=FILTER.gentle", "order=1"),

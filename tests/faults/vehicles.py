@@ -9,6 +9,19 @@ FAULTS = [
     Fault("footprint twice as long", "_basics/enveloping.py", "half = 0.5 *", "half = 1.0 *"),
     Fault("cams twice as far apart", "_basics/enveloping.py", "0.5 * cams", "1.0 * cams"),
     # Vehicle.
+    Fault(
+        "numbers stored as they came",
+        "_basics/checks.py",
+        "checks.values[field.name])",
+        "getattr(owner, field.name))",
+    ),
+    Fault("arrays without axes refused", "_basics/checks.py", "return value.item() if", "return value if"),
+    Fault(
+        "checked, and not used",
+        "vehicles/cars.py",
+        'pitch_inertia = check.positive("pitch_inertia", pitch_inertia, "kg m²")\n        roll',
+        'check.positive("pitch_inertia", pitch_inertia, "kg m²")\n        roll',
+    ),
     Fault("gravity", "vehicles/vehicle.py", "GRAVITY = 9.81", "GRAVITY = 9.80665"),
     Fault("tyre damping missing", "vehicles/dynamics.py", "np.diag(dashpots)", "0.0 * np.diag(dashpots)"),
     Fault("inertia sign", "vehicles/dynamics.py", "(linear + s * square)", "(linear - s * square)"),

@@ -6,7 +6,7 @@ import difflib
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from numbers import Real
 from typing import Any, NamedTuple, TypeVar
 
@@ -88,15 +88,27 @@ def option(name: str) -> str:
     return f"`{name}` (on the command line --{name.replace('_', '-')})"
 
 
+def plain(value: Any) -> Any:
+    """Make a Python number of a scalar in another dress: NumPy's, or an array without axes; leave the rest."""
+    return value.item() if getattr(value, "ndim", None) == 0 and not np.ma.is_masked(value) else value
+
+
 class Checks:
     """Collects faults, so that one error can name every one of them.
 
-    Each check returns the value in the type that the caller stores; after a fault the returned value is
-    meaningless and the surrounding `checking` block raises.
+    Each check returns the value in the type that the caller stores, and no other is to be used: a number of single
+    precision makes single precision of what it meets. After a fault the returned value is meaningless and the
+    surrounding `checking` block raises.
     """
 
     def __init__(self) -> None:
         self.faults: list[Fault] = []
+        self.values: dict[str, Any] = {}
+
+    def keep(self, name: str, value: Kind) -> Kind:
+        """Remember a value as that of `name`, in the type in which it is stored; returns it."""
+        self.values[name] = value
+        return value
 
     def refuse(self, name: str, message: str) -> None:
         """Record that `name` is refused because of `message`."""
@@ -104,6 +116,7 @@ class Checks:
 
     def finite(self, name: str, value: Any, unit: str, condition: str = "a finite number") -> float:
         """Demand a real, finite number of credible magnitude."""
+        value = plain(value)
         if not isinstance(value, Real) or isinstance(value, bool):
             self.refuse(name, f"must be {in_brackets(condition, unit)}, got {shown(value)}")
             return float("nan")
@@ -119,7 +132,7 @@ class Checks:
                 f"must be of a credible magnitude, at most {CREDIBLE.largest:g}, got {with_unit(number, unit)}",
             )
         else:
-            return number
+            return self.keep(name, number)
         return float("nan")
 
     def positive(self, name: str, value: Any, unit: str) -> float:
@@ -136,8 +149,8 @@ class Checks:
 
     def positive_or_infinite(self, name: str, value: Any, unit: str) -> float:
         """Demand a number above zero, or infinity."""
-        if isinstance(value, float) and value == math.inf:
-            return value
+        if isinstance(value := plain(value), Real) and value == math.inf:
+            return self.keep(name, math.inf)
         return self.positive(name, value, unit)
 
     def not_negative(self, name: str, value: Any, unit: str) -> float:
@@ -149,50 +162,56 @@ class Checks:
 
     def whole(self, name: str, value: Any, *, least: int = 0) -> int:
         """Demand a whole number of at least `least`."""
-        if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
+        number = plain(value)
+        if isinstance(number, bool) or not isinstance(number, int) or number < least:
             self.refuse(name, f"must be a whole number of at least {least}, got {shown(value)}")
             return least
-        return int(value)
+        return self.keep(name, number)
 
     def text(self, name: str, value: Any) -> str:
         """Demand a text."""
         if isinstance(value, str):
-            return value
+            return self.keep(name, str(value))
         self.refuse(name, f"must be a text, got {shown(value)}")
         return ""
 
-    def array(self, name: str, value: ArrayLike, unit: str, shape: tuple[int | None, ...]) -> FloatArray:
-        """Demand finite numbers in an array of the given shape (None: any length); returns a frozen copy."""
+    def array(self, name: str, value: ArrayLike, unit: str, shape: tuple[int | None, ...] | None) -> FloatArray:
+        """Demand finite numbers in an array of the given shape (None: any, of a length too); returns a frozen copy.
+
+        Nothing may have made an ordinary array of it before: that uncovers what is masked.
+        """
         try:
-            given = np.asarray(value)
-            numbers = given.dtype.kind in "iuf" or not given.size
-            array = np.array(given, dtype=float) if numbers else given
-        except (TypeError, ValueError, OverflowError):
-            numbers = False
-        if not numbers:
+            array = real_numbers(value)
+        except (TypeError, ValueError, OverflowError, RecursionError):
             self.refuse(name, f"must be {in_brackets('an array of numbers', unit)}, got {shown(value)}")
-            return np.full([n or 1 for n in shape], np.nan)
+            return np.full([n or 1 for n in shape or ()], np.nan)
+        shape = array.shape if shape is None else shape
         wanted = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
         if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
             self.refuse(name, f"must have shape {wanted}, got {array.shape}")
             return np.full([n or 1 for n in shape], np.nan)
         bad = np.argwhere(~(np.abs(array) <= CREDIBLE.largest))
-        if bad.size:
+        if len(bad):
             place = tuple(int(i) for i in bad[0])
+            got = "a masked value" if masks(value) and np.isnan(array[place]) else repr(float(array[place]))
             self.refuse(
                 name,
-                f"must be finite and at most {with_unit(CREDIBLE.largest, unit)} throughout, got "
-                f"{float(array[place])!r} at index {place[0] if len(place) == 1 else place}",
+                f"must be finite and at most {with_unit(CREDIBLE.largest, unit)} throughout, got {got}{_at(place)}",
             )
         array.flags.writeable = False
-        return array
+        return self.keep(name, array)
+
+    def spread(self, name: str, value: ArrayLike, unit: str, shape: tuple[int, ...]) -> FloatArray:
+        """Demand finite numbers in an array of the given shape, or one for all of it."""
+        array = self.array(name, value, unit, None)
+        return np.broadcast_to(array, shape) if array.ndim == 0 else self.array(name, array, unit, shape)
 
     def listed(self, name: str, value: Any, kind: type[Kind], *, least: int = 1) -> tuple[Kind, ...]:
         """Demand a list of at least `least` objects of one kind."""
         if isinstance(value, (list, tuple)) and len(value) >= least and all(isinstance(one, kind) for one in value):
-            return tuple(value)
+            return self.keep(name, tuple(value))
         number = "one or more" if least else "any number of"
-        what = {str: "texts", int: "whole numbers"}.get(kind, f"{kind.__name__} objects")
+        what = "texts" if kind is str else f"{kind.__name__} objects"
         self.refuse(name, f"must be a list of {number} {what}, got {shown(value)}")
         return ()
 
@@ -214,13 +233,64 @@ class Checks:
             return (float("nan"), float("nan"))
         check = self.finite if signed else self.positive if positive else self.not_negative
         check = self.positive_or_infinite if infinite else check
-        return check(f"{name}[0]", first, unit), check(f"{name}[1]", second, unit)
+        return self.keep(name, (check(f"{name}[0]", first, unit), check(f"{name}[1]", second, unit)))
 
 
 @contextmanager
-def checking() -> Iterator[Checks]:
-    """Run a block of checks and raise one `ParameterError` at its end if any of them failed."""
+def checking(owner: Any = None) -> Iterator[Checks]:
+    """Run a block of checks and raise one `ParameterError` at its end if any of them failed.
+
+    Parameters
+    ----------
+    owner : dataclass instance, optional
+        A frozen value under construction: its fields become what was checked under their names.
+    """
     checks = Checks()
     yield checks
     if checks.faults:
         raise ParameterError(checks.faults)
+    for field in () if owner is None else fields(owner):
+        if field.name in checks.values:
+            object.__setattr__(owner, field.name, checks.values[field.name])
+
+
+def real_numbers(value: Any) -> FloatArray:
+    """Make numbers of an array, or of lists of them; nan of what is masked, whatever number lies below.
+
+    Raises
+    ------
+    TypeError, ValueError, OverflowError
+        If there is something else among them; true and false are no numbers.
+    """
+    kinds = _kinds(value)
+    if kinds & {bool, np.bool_}:
+        raise TypeError("true and false are no numbers")
+    given = np.asarray(uncovered(value) if masks(value) else value)
+    if given.size and given.dtype.kind not in "iuf" and not all(issubclass(kind, Real) for kind in kinds):
+        raise TypeError(f"got {shown(value)}")
+    return np.array(given, dtype=float)
+
+
+def masks(value: Any) -> bool:
+    """Whether an array, or one in a list, may be masked."""
+    return any(issubclass(kind, np.ma.MaskedArray) for kind in _kinds(value))
+
+
+def _at(place: tuple[int, ...]) -> str:
+    """Say where in an array; nothing of one without axes."""
+    return f" at index {place[0] if len(place) == 1 else place}" if place else ""
+
+
+def uncovered(value: Any) -> Any:
+    """Put nan where a masked array, or one in a list, has nothing; the number below a mask is none."""
+    if isinstance(value, (list, tuple)):
+        return [uncovered(each) for each in value]
+    return np.where(np.ma.getmaskarray(value), np.nan, value.data) if masks(value) else value
+
+
+def _kinds(value: Any) -> set[type]:
+    """Collect the types of what lists hold, to any depth."""
+    if not isinstance(value, (list, tuple)):
+        return {type(value)}
+    kinds = set(map(type, value))
+    return set().union(*map(_kinds, value)) if kinds & {list, tuple} else kinds

@@ -52,7 +52,7 @@ class EulerBernoulliBeam:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.positive("bending_stiffness", self.bending_stiffness, "N m²")
             check.positive("mass", self.mass, "kg/m")
             check.not_negative("bending_damping", self.bending_damping, "N m² s")
@@ -93,7 +93,7 @@ class TimoshenkoBeam:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.positive("bending_stiffness", self.bending_stiffness, "N m²")
             check.positive("mass", self.mass, "kg/m")
             check.positive("shear_stiffness", self.shear_stiffness, "N")

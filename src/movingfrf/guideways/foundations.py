@@ -42,7 +42,7 @@ class Spring:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             _check_spring(check, self.stiffness, self.damping)
 
     def foundation_stiffness(self, *, damped: bool = True) -> Ratio:
@@ -75,7 +75,7 @@ class ShearLayer:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             _check_spring(check, self.stiffness, self.damping)
             check.positive("shear_stiffness", self.shear_stiffness, "N")
 
@@ -112,7 +112,7 @@ class OnMass:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.positive("mass", self.mass, "kg/m")
             for name in ("above", "below"):
                 if not isinstance(getattr(self, name), Foundation):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.checks import checking
+from movingfrf._basics.checks import checking, uncovered
 
 
 class Guideway(Protocol):
@@ -142,11 +142,11 @@ def at_offsets(
     """
     with checking() as check:
         places = [
-            check.array(name, np.asarray(given).ravel(), "m", (None,)).reshape(np.shape(given))
+            check.array(name, given, "m", None)
             for name, given in (("ahead", ahead), ("across", across), ("source_across", source_across))
         ]
         speed = check.finite("speed", speed, "m/s")
-        frequencies = np.atleast_1d(np.asarray(omega, complex))
+        frequencies = np.atleast_1d(np.asarray(uncovered(omega), complex))
         if frequencies.ndim != 1 or not np.isfinite(frequencies).all() or (frequencies.imag > 0).any():
             check.refuse("omega", "must be finite, one-dimensional and have Im ω ≤ 0 [rad/s]")
         derivative = check.whole("derivative", derivative)

@@ -51,7 +51,7 @@ class RelaxingSpring:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.positive("stiffness", self.stiffness, "N/m²")
             check.positive("relaxing_stiffness", self.relaxing_stiffness, "N/m²")
             check.positive("damping", self.damping, "N s/m²")

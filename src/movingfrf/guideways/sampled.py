@@ -77,25 +77,19 @@ class SampledGuideway:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             offsets = check.array("offsets", self.offsets, "m", (None,))
             response = check.array("response", self.response, "m/(N s)", (None, offsets.size))
             check.positive("time_step", self.time_step, "s")
             check.finite("speed", self.speed, "m/s")
             if (self.across is None) != (self.source_across is None):
                 check.refuse("across", "and source_across must be given both or neither [m]")
-            beside = [
-                None if value is None else check.array(name, value, "m", (offsets.size,))
-                for name, value in (("across", self.across), ("source_across", self.source_across))
-            ]
-            if not self.critical_speed > 0:
-                check.refuse("critical_speed", f"must be positive, got {self.critical_speed!r} m/s")
+            for name, value in (("across", self.across), ("source_across", self.source_across)):
+                if value is not None:
+                    check.array(name, value, "m", (offsets.size,))
+            check.positive_or_infinite("critical_speed", self.critical_speed, "m/s")
             if not check.faults and (len(response) < 2 or not offsets.size):
                 check.refuse("response", "must hold at least two samples and one offset")
-        object.__setattr__(self, "offsets", offsets)
-        object.__setattr__(self, "response", response)
-        object.__setattr__(self, "across", beside[0])
-        object.__setattr__(self, "source_across", beside[1])
 
     def __repr__(self) -> str:
         """Say which record it is: its size, and a sum over its bytes in place of them."""
@@ -132,7 +126,9 @@ class SampledGuideway:
         ValueError
             If an offset was not recorded.
         """
-        places = np.broadcast_arrays(*(np.asarray(place, float) for place in (ahead, across, source_across)))
+        named = {"ahead": ahead, "across": across, "source_across": source_across}
+        with checking() as check:
+            places = np.broadcast_arrays(*(check.array(name, place, "m", None) for name, place in named.items()))
         wide = () if self.across is None else (self.across, self.source_across)
         known = [np.asarray(recorded, float) for recorded in (self.offsets, *wide)]
         asked = len(known)
@@ -142,7 +138,7 @@ class SampledGuideway:
         nearest = apart.argmin(axis=-1)
         missing = apart.min(axis=-1) > RECORD.same_place
         if missing.any():
-            names = ("ahead", "across", "source_across")[:asked]
+            names = list(named)[:asked]
             recorded = np.stack(known, axis=-1).squeeze(axis=-1 if asked == 1 else ()).tolist()
             wanted = [float(place[missing][0]) for place in places[:asked]]
             raise ValueError(

@@ -60,7 +60,7 @@ class TensionedBeam:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             if not isinstance(self.beam, Beam):
                 check.refuse("beam", f"must be a beam, got {shown(self.beam)}")
             check.finite("force", self.force, "N")

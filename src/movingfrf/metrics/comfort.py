@@ -95,6 +95,19 @@ class Comfort(NamedTuple):
     mtvv: float  # greatest running rms over one second [m/s²]
     vdv: float  # vibration dose value [m/s^1.75]
     duration: float  # [s]
+    bias: float = 0.0  # what was taken out of a recording: half-way through it [m/s²] …
+    drift: float = 0.0  # … and its rise [m/s³]
+
+    @property
+    def taken_out(self) -> str:
+        """What was taken out of a recorded acceleration, in words; empty of a computed one."""
+        if not (self.bias or self.drift):
+            return ""
+        unit = "rad/s²" if self.weighting == WEIGHTING_OF["rad"] else "m/s²"
+        words = f"a bias of {self.bias:.3g} {unit} and a drift of {self.drift:.3g} {unit} per second were taken out"
+        slowest = 1 / WEIGHTINGS[self.weighting].band[0]
+        short = f"; in less than {slowest:.3g} s {self.weighting} cannot tell them from vibration"
+        return words + (short if self.duration < slowest else "")
 
     @property
     def crest_factor(self) -> float:
@@ -160,9 +173,8 @@ def weighting(name: str, frequency: ArrayLike) -> ComplexArray:
     """
     with checking() as check:
         check_weighting(check, name)
-        shape = np.shape(frequency)
-        f = check.array("frequency", np.ravel(frequency), "Hz", (None,))
-    chosen, p = WEIGHTINGS[name], 2j * np.pi * f.reshape(shape)
+        f = check.array("frequency", frequency, "Hz", None)
+    chosen, p = WEIGHTINGS[name], 2j * np.pi * f
     low, high = chosen.band
     factor = chosen.gain * (p / (2 * np.pi * low)) ** 2 / _second_order(p, low) / _second_order(p, high)
     if chosen.transition:
@@ -174,7 +186,7 @@ def weighting(name: str, frequency: ArrayLike) -> ComplexArray:
     return factor
 
 
-def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk") -> FloatArray:
+def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk", *, recorded: bool = False) -> FloatArray:
     """Weight acceleration histories.
 
     In the frequency domain, where a weighting is exact, behind a padding in which it forgets.
@@ -187,6 +199,9 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk") -> Flo
         Step in time [s].
     name : str
         Name of the weighting; see `weighting`.
+    recorded : bool
+        Whether they were measured. A recording does not begin as a step from zero: the straight line that fits it
+        best, which is gravity, bias and drift of the sensor, is then taken out first.
 
     Returns
     -------
@@ -209,12 +224,14 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk") -> Flo
 
     with checking() as check:
         check_weighting(check, name)
-        check.positive("time_step", time_step, "s")
+        time_step = check.positive("time_step", time_step, "s")
         values, shape = _histories(check, "acceleration", acceleration, "m/s²")
     # What is left of a weighting's memory at the end of the padding [1e-15 to 1e-7].
     forgotten = 1e-9
     # The slowest pole is that of the Butterworth high-pass: ω₁/√2.
     memory = -np.log(forgotten) * np.sqrt(2) / (2 * np.pi * WEIGHTINGS[name].band[0])
+    if recorded:
+        values, _, _ = _without_line(values, time_step)
     padded = scipy.fft.next_fast_len(len(values) + int(np.ceil(memory / time_step)), real=True)
     factor = weighting(name, scipy.fft.rfftfreq(padded, time_step))
     spectra = scipy.fft.rfft(values, padded, axis=0)
@@ -248,8 +265,8 @@ def running_rms(values: ArrayLike, time_step: float, window: float = ISO_2631.ru
     ISO 2631-1:1997, 6.3.1, equation (2).
     """
     with checking() as check:
-        check.positive("time_step", time_step, "s")
-        check.positive("window", window, "s")
+        time_step = check.positive("time_step", time_step, "s")
+        window = check.positive("window", window, "s")
         histories, shape = _histories(check, "values", values, "any unit")
     squares = histories**2
     energy = np.concatenate([np.zeros_like(squares[:1]), np.cumsum(squares, axis=0)])
@@ -284,7 +301,7 @@ def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
     ISO 2631-1:1997, 6.3.2, equation (5).
     """
     with checking() as check:
-        check.positive("time_step", time_step, "s")
+        time_step = check.positive("time_step", time_step, "s")
         histories, shape = _histories(check, "values", values, "m/s²")
     return np.asarray((np.sum(histories**4, axis=0) * time_step) ** 0.25).reshape(shape[1:])
 
@@ -336,18 +353,21 @@ def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk", since: float
         if not check.faults and dof not in result.dof.values.tolist():
             check.refuse("dof", f"must be one of {', '.join(map(str, result.dof.values))}, got {shown(dof)}")
     step = float(result.attrs["time_step"])
-    return whole_body_vibration(result.acceleration.sel(dof=dof).values, step, weighting, since=since)
+    return vibration(result.acceleration.sel(dof=dof).values, step, weighting, since=since)
 
 
 def whole_body_vibration(
     acceleration: ArrayLike, time_step: float, weighting: str = "Wk", *, since: float = 0.0
 ) -> Comfort:
-    """Measure an acceleration history, a recorded one for instance, as `comfort` measures a result's.
+    """Measure a recorded acceleration as `comfort` measures a result's.
+
+    A recording does not begin as a step from zero: the straight line that fits it best is taken out first, which is
+    gravity, bias and drift of the sensor. What is left is zero before and after.
 
     Parameters
     ----------
     acceleration : array_like, shape (time,)
-        Acceleration of seat, floor or backrest along one axis [m/s² or rad/s²], zero before and after.
+        Acceleration of seat, floor or backrest along one axis [m/s² or rad/s²]; at least three samples.
     time_step : float
         Step in time [s].
     weighting : str
@@ -358,13 +378,15 @@ def whole_body_vibration(
     Returns
     -------
     Comfort
-        As `comfort` returns it.
+        As `comfort` returns it, with the `bias` [m/s²] and the `drift` [m/s³] that were taken out, as properties in
+        words `taken_out`. A record shorter than the slowest wave that the weighting passes (Wk: 2.5 s) cannot tell
+        them from vibration, and the words say so.
 
     Raises
     ------
     ValueError
-        If there is no such weighting, the step is not positive, there is not one finite history, or nothing of it
-        is left.
+        If there is no such weighting, the step is not positive, there is not one finite history of at least three
+        samples, or nothing of it is left.
 
     References
     ----------
@@ -373,13 +395,35 @@ def whole_body_vibration(
     Examples
     --------
     >>> time = np.arange(0.0, 60.0, 1e-3)
-    >>> found = whole_body_vibration(0.5 * np.sin(2 * np.pi * 8 * time), 1e-3, "Wk")
-    >>> round(found.rms, 3), found.exceeded
-    (0.366, ())
+    >>> found = whole_body_vibration(9.81 + 0.5 * np.sin(2 * np.pi * 8 * time), 1e-3, "Wk")
+    >>> round(found.rms, 3), found.exceeded, round(found.bias, 3)
+    (0.366, (), 9.81)
     """
     with checking() as check:
-        check.array("acceleration", acceleration, "m/s²", (None,))
-        check.positive("time_step", time_step, "s")
+        history = check.array("acceleration", acceleration, "m/s²", (None,))
+        time_step = check.positive("time_step", time_step, "s")
+        if not check.faults and history.size < 3:
+            check.refuse("acceleration", f"must hold at least three samples [m/s²], got {history.size}")
+    left, bias, drift = _without_line(history, time_step)
+    found = vibration(left, time_step, weighting, since=since)
+    return found._replace(bias=float(bias), drift=float(drift))
+
+
+def vibration(acceleration: FloatArray, time_step: float, weighting: str, *, since: float) -> Comfort:
+    """Measure an acceleration that begins at rest, as a computed one does: nothing is taken out of it.
+
+    Parameters
+    ----------
+    acceleration : ndarray, shape (time,)
+        Acceleration [m/s² or rad/s²], zero before and after.
+    time_step, weighting, since
+        As for `whole_body_vibration`.
+
+    Returns
+    -------
+    Comfort
+        Its measures.
+    """
     first = samples_before(since, time_step, np.size(acceleration))
     values = weighted(acceleration, time_step, weighting)[first:]
     return Comfort(
@@ -415,7 +459,7 @@ def samples_before(since: float, time_step: float, count: int) -> int:
         If the instant is negative, or beyond the record.
     """
     with checking() as check:
-        check.not_negative("since", since, "s")
+        since = check.not_negative("since", since, "s")
         if not check.faults and since > (count - 1) * time_step:
             check.refuse(
                 "since", f"must lie within the record, {(count - 1) * time_step:.6g} s at most, got {since!r} s"
@@ -452,86 +496,8 @@ def comfort_reactions(rms: float) -> tuple[str, ...]:
     (('a little uncomfortable',), ('fairly uncomfortable', 'uncomfortable'))
     """
     with checking() as check:
-        check.not_negative("rms", rms, "m/s²")
+        rms = check.not_negative("rms", rms, "m/s²")
     return tuple(name for name, least, most in ISO_2631.reactions if least <= rms < most)
-
-
-def vibration_total(rms: ArrayLike, factors: ArrayLike = 1.0) -> float:
-    """Combine the weighted rms accelerations of several axes, (Σ k² a²)^½.
-
-    Parameters
-    ----------
-    rms : array_like, shape (axis,)
-        Weighted rms acceleration of each axis [m/s² or rad/s²].
-    factors : array_like, shape (axis,)
-        The factor k of each, for health 1.4, 1.4 and 1; for a seated person's comfort see `seated_total`.
-
-    Returns
-    -------
-    float
-        Vibration total value [m/s²].
-
-    Raises
-    ------
-    ValueError
-        If an array is not a list of finite numbers, one factor for each axis.
-
-    References
-    ----------
-    ISO 2631-1:1997, 6.5, equation (10).
-
-    Examples
-    --------
-    >>> round(vibration_total([0.3, 0.2, 0.5], [1.4, 1.4, 1.0]), 3)
-    0.71
-    """
-    with checking() as check:
-        values = check.array("rms", rms, "m/s²", (None,))
-        scales = check.array("factors", factors, "1", (values.size,) if np.ndim(factors) else ())
-    return float(np.sqrt(np.sum((scales * values) ** 2)))
-
-
-def seated_total(rms: Mapping[str, float]) -> float:
-    """Combine what a seated person feels at seat, backrest and feet, each axis with its factor for comfort.
-
-    Parameters
-    ----------
-    rms : mapping of str to float
-        Weighted rms acceleration [m/s² or rad/s²] by place and axis: `seat` with `x`, `y`, `z` (factor 1), `roll`
-        (0.63), `pitch` (0.4) and `yaw` (0.2); `backrest` with `x` (0.8), `y` (0.5) and `z` (0.4); `feet` with `x`,
-        `y` (0.25) and `z` (0.4). Those that are left out count as zero. Weighted with Wk on the vertical of the
-        seat and on all of the feet, Wc on the backrest's x, We on rotations, Wd on the others.
-
-    Returns
-    -------
-    float
-        Overall vibration total value [m/s²].
-
-    Raises
-    ------
-    ValueError
-        If there is no such place and axis, or a value is negative.
-
-    References
-    ----------
-    ISO 2631-1:1997, 8.2.2.1 and 8.2.3.
-
-    Examples
-    --------
-    >>> round(seated_total({"seat z": 0.5, "seat pitch": 0.6, "backrest x": 0.3}), 3)
-    0.604
-    """
-    with checking() as check:
-        given = rms.items() if isinstance(rms, Mapping) else ()
-        if not given:
-            check.refuse(
-                "rms", f"must give accelerations by place and axis, as {{'seat z': 0.5}}, got {shown(rms)}"
-            )
-        for name, value in given:
-            if name not in ISO_2631.seated:
-                check.refuse("rms", f"must be of {', '.join(ISO_2631.seated)}, got {shown(name)}")
-            check.not_negative(f"rms[{name!r}]", value, "m/s²")
-    return vibration_total(list(rms.values()), [ISO_2631.seated[name] for name in rms])
 
 
 def _second_order(p: ComplexArray, frequency: float, quality: float = np.sqrt(0.5)) -> ComplexArray:
@@ -553,10 +519,17 @@ def check_weighting(check: Checks, name: object) -> None:
         check.refuse("weighting", f"must be one of {', '.join(WEIGHTINGS)}, got {shown(name)}")
 
 
+def _without_line(values: FloatArray, time_step: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Histories (time, …) without the straight line that fits each best, its middle and its slope."""
+    time = time_step * (np.arange(len(values)) - 0.5 * (len(values) - 1))
+    middle, slope = values.mean(axis=0), time @ values / max(float(time @ time), time_step**2)
+    return values - middle - np.multiply.outer(time, slope), middle, slope
+
+
 def _histories(check: Checks, name: str, values: ArrayLike, unit: str) -> tuple[FloatArray, tuple[int, ...]]:
     """Histories side by side (time, channel), and the shape in which they came."""
-    shape = np.shape(values)
-    if not np.prod(shape, dtype=int) or not shape:
-        check.refuse(name, f"must hold at least one sample, in a first axis over time, got shape {shape}")
-        return np.ones((1, 1)), shape
-    return check.array(name, np.reshape(values, (shape[0], -1)), unit, (None, None)), shape
+    array = check.array(name, values, unit, None)
+    if not array.size or not array.ndim:
+        check.refuse(name, f"must hold at least one sample, in a first axis over time, got shape {array.shape}")
+        return np.ones((1, 1)), array.shape
+    return array.reshape(len(array), -1), array.shape

@@ -15,7 +15,7 @@ from movingfrf.metrics.comfort import (
     WEIGHTINGS,
     Comfort,
     samples_before,
-    whole_body_vibration,
+    vibration,
 )
 from movingfrf.metrics.fatigue import spectral_fatigue
 from movingfrf.metrics.loads import (
@@ -89,7 +89,7 @@ class History:
         if dof not in self._felt:
             acceleration = self.whole.acceleration.values[:, dof]
             weighting = self.place("dof", dof).words["weighting"]
-            self._felt[dof] = whole_body_vibration(acceleration, self.step, weighting, since=self.since)
+            self._felt[dof] = vibration(acceleration, self.step, weighting, since=self.since)
         return self._felt[dof]
 
     def value(self, variable: str, number: int) -> float:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.special import gammaln
 
 from movingfrf._basics.arrays import FloatArray, IntArray
-from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf._basics.checks import Checks, checking, plain, shown
 from movingfrf.results.labels import RANDOM_QUANTITIES, kind_of
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ def rainflow_damage(values: ArrayLike, *, slope: float, strength: float = 1.0) -
     >>> round(rainflow_damage(np.tile([0.0, 2.0, 0.0, -2.0], 10), slope=3.0), 9)
     80.0
     """
-    _check_curve(slope, strength)
+    slope, strength = _curve(slope, strength)
     return float(np.sum(rainflow(values)[:, 0] ** slope) / strength)
 
 
@@ -177,9 +177,10 @@ def equivalent_amplitude(values: ArrayLike, *, slope: float, duration: float, ra
     3.0
     """
     with checking() as check:
-        check.positive("duration", duration, "s")
-        check.positive("rate", rate, "1/s")
-    return float((rainflow_damage(values, slope=slope) / (rate * duration)) ** (1 / slope))
+        duration = check.positive("duration", duration, "s")
+        rate = check.positive("rate", rate, "1/s")
+    damage = rainflow_damage(values, slope=slope)
+    return float((damage / (rate * duration)) ** (1 / float(slope)))
 
 
 def spectral_damage(
@@ -235,7 +236,7 @@ def spectral_damage(
     >>> round(spectral_damage(f, np.full(201, 5.0), slope=4.0), 1)  # σ² = 1: 10 · 4 · Γ(3)
     80.0
     """
-    _check_curve(slope, strength)
+    slope, strength = _curve(slope, strength)
     with checking() as check:
         f = check.array("frequency", frequency, "Hz", (None,))
         given = check.array("density", density, "unit²/Hz", (f.size,))
@@ -283,15 +284,17 @@ def _turning_points(history: FloatArray) -> FloatArray:
     return moved[np.concatenate([[True], rises[1:] != rises[:-1], [True]])] if moved.size > 1 else moved
 
 
-def _check_curve(slope: float, strength: float) -> None:
+def _curve(slope: float, strength: float) -> tuple[float, float]:
     # Powers of a force beyond this leave the range of numbers; S-N curves are far flatter [a convention].
     steepest = 50.0
     with checking() as check:
-        if check.positive("slope", slope, "1") > steepest:
+        if (slope := check.positive("slope", slope, "1")) > steepest:
             check.refuse("slope", f"must be at most {steepest:g}, got {slope!r}")
         # A power of a force leaves the magnitudes of physical quantities.
+        strength = plain(strength)
         if not (isinstance(strength, Real) and 0 < strength < float("inf")):
             check.refuse("strength", f"must be positive, got {shown(strength)} unit^m")
+    return slope, float(strength)
 
 
 def _extra(module: str) -> ModuleType:

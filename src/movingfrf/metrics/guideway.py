@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
-from movingfrf._basics.checks import checking
+from movingfrf._basics.checks import checking, uncovered
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import in_moving_frame, wavenumbers
@@ -169,7 +169,7 @@ def decay_rate(response: ArrayLike, distance: ArrayLike) -> FloatArray:
     """
     with checking() as check:
         at = check.array("distance", distance, "m", (None,))
-        size = np.abs(np.asarray(response))
+        size = np.abs(np.asarray(uncovered(response), complex))
         if not check.faults and (at.size < 2 or at[0] != 0 or (np.diff(at) <= 0).any()):
             check.refuse("distance", "must increase from 0 and be two or more [m]")
         if size.shape[-1:] != at.shape:
@@ -209,11 +209,12 @@ def track_decay_rate(guideway: Guideway, frequency: ArrayLike, *, spacing: float
     EN 15461:2008+A1:2010, 6.7 and formula (1).
     """
     with checking() as check:
-        check.positive("spacing", spacing, "m")
-        if not (check.array("frequency", frequency, "Hz", (None,)) > 0).all():
+        spacing = check.positive("spacing", spacing, "m")
+        f = check.array("frequency", frequency, "Hz", (None,))
+        if not (f > 0).all():
             check.refuse("frequency", "must be positive [Hz]")
     distance = spacing * BAYS
-    return decay_rate(mobility(guideway, frequency, ahead=distance).mobility.values, distance)
+    return decay_rate(mobility(guideway, f, ahead=distance).mobility.values, distance)
 
 
 def wave_decay_rate(track: Track, frequency: ArrayLike) -> FloatArray:
@@ -261,8 +262,10 @@ def _response(guideway: Guideway, frequency: ArrayLike, ahead: ArrayLike, speed:
         f = check.array("frequency", frequency, "Hz", (None,))
         if (f < 0).any():
             check.refuse("frequency", f"must not be negative, got {f.min():g} Hz")
-        at = check.array("ahead", np.atleast_1d(np.asarray(ahead)), "m", (None,))
-        check.finite("speed", speed, "m/s")
+        at = np.atleast_1d(check.array("ahead", ahead, "m", None))
+        if at.ndim > 1:
+            check.refuse("ahead", f"must have shape (any), got {at.shape}")
+        speed = check.finite("speed", speed, "m/s")
     omega = 2 * np.pi * f
     values: NumberArray = (1j * omega[:, None]) ** POWERS[form] * guideway.moving_frf(at, speed, omega)
     settings = attributes(

@@ -48,7 +48,7 @@ def impact_factor(result: xr.Dataset, *, percentile: float = CUSTOMARY) -> Float
     """
     with checking() as check:
         check_coupled(check, result)
-        if not 0 <= check.finite("percentile", percentile, "%") <= 100:
+        if not 0 <= (percentile := check.finite("percentile", percentile, "%")) <= 100:
             check.refuse("percentile", f"must lie between 0 and 100 %, got {percentile!r} %")
     load = result.static_load.values
     high = load + np.percentile(result.contact_force.values, percentile, axis=0)

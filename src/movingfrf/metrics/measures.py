@@ -125,7 +125,7 @@ def assess(
             _check_chosen(check, "dofs", dofs, result.dof.values.tolist())
         check_weighting(check, weighting)
         if slope is not None:
-            check.positive("slope", slope, "1")
+            slope = check.positive("slope", slope, "1")
     names = result.dof.values.tolist()
     history = History(whole=result, weighting=weighting, slope=slope, since=since, judged=dofs is not None)
     return _everywhere(
@@ -167,6 +167,8 @@ def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[M
     """
     with checking() as check:
         check_random(check, result)
+        if slope is not None:
+            slope = check.positive("slope", slope, "1")
     return _everywhere(
         partial(Table.of_random, random=Random(result=result, slope=slope)),
         contact=range(result.sizes["contact"]),

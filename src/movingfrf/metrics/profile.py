@@ -10,16 +10,14 @@ from movingfrf._basics.arrays import FloatArray, finite
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.welch import Spectra
 from movingfrf._basics.wording import evenly_spread, named_paths
-from movingfrf.metrics.iri import PROCEDURE, iri
+from movingfrf.metrics.iri import PROCEDURE, coarse_for_index, straight_index
 from movingfrf.metrics.spectra import path_spectra
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
 from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES
 from movingfrf.roughness.steps.resampled import resampled
 from movingfrf.roughness.steps.selected import selected
-
-# Resolutions of instruments and file formats that are looked for [m].
-RESOLUTIONS = (1e-2, 1e-3, 5e-4, 2.5e-4, 1e-4, 1e-5, 1e-6)
+from movingfrf.roughness.straight import mean_slope, resolution, straight
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +49,8 @@ class PathDescription:
         Lateral position [m], left positive, where it is known.
     lowest, highest : float
         Elevations between which it lies [m].
+    slope : float
+        Mean slope, of the straight line that fits best [m/m], positive uphill.
     resolution : float
         What all elevations are a multiple of [m]; 0 if nothing was found.
     fit : IsoFit
@@ -67,6 +67,7 @@ class PathDescription:
     across: float | None
     lowest: float
     highest: float
+    slope: float
     resolution: float
     fit: IsoFit
     index: float
@@ -159,14 +160,19 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
         )
     indices, reason = _indices(described, step, progress)
     progress("spectra", 0.0)
-    estimated = path_spectra(described.columns, step)
+    # By the profile's own numbers: what a spline makes of them between stations has not their resolution.
+    rough = ~straight(profile.stations, profile.columns[:, numbers])
+    estimated = path_spectra(described.columns, step, rough)
+    slopes = mean_slope(profile.stations, profile.columns[:, numbers])
     if reason:
         findings.append(reason)
+    elif indices:
+        findings += [f"{_sentence(finding.message)}." for finding in coarse_for_index(described)]
     paths = []
     for n, number in enumerate(numbers):
         progress("paths", n / len(numbers))
         column = profile.columns[:, number]
-        paths.append(_path(described, n, number, column, indices, estimated))
+        paths.append(_path(described, n, number, column, float(slopes[n]), indices, estimated))
         findings += _oddities(profile.stations, column, f" on path {number}" if len(alike) > 1 else "")
     findings += _doubts(paths)
     return ProfileDescription(
@@ -202,6 +208,7 @@ def as_dict(found: ProfileDescription, understood: str = "") -> dict[str, object
             "across_m": path.across,
             "lowest_m": path.lowest,
             "highest_m": path.highest,
+            "mean_slope_percent": 100 * path.slope,
             "resolution_m": path.resolution or None,
             "roughness_m3": path.fit.roughness,
             "waviness": path.fit.waviness,
@@ -241,6 +248,7 @@ def _path(
     column: int,
     number: int,
     elevation: FloatArray,
+    slope: float,
     indices: dict[float, FloatArray],
     estimated: Spectra,
 ) -> PathDescription:
@@ -252,7 +260,8 @@ def _path(
         across=across,
         lowest=float(elevation.min()),
         highest=float(elevation.max()),
-        resolution=_resolution(elevation),
+        slope=slope,
+        resolution=resolution(elevation),
         fit=fit_iso(*spectrum),
         index=float(indices[0.0][0, column]) if 0.0 in indices else float("nan"),
         indices={span: found[:, column] for span, found in indices.items() if span},
@@ -277,7 +286,7 @@ def _indices(even: Profile, step: float, progress: Progress) -> tuple[dict[float
     found = {}
     for n, span in enumerate(wanted):
         progress("roughness index", n / len(wanted))
-        found[span] = iri(even, segment=span or None)
+        found[span] = straight_index(even, span or None)
     return found, ""
 
 
@@ -293,19 +302,6 @@ def _coherence(estimated: Spectra) -> tuple[FloatArray, FloatArray] | None:
     if not lines.size:
         return None
     return frequency / lines, (real**2 + imaginary**2) / (first * last)
-
-
-def _resolution(elevation: FloatArray) -> float:
-    """Find what all elevations are a multiple of [m]; 0 if nothing that is usual."""
-    # So many stations are looked at [1000 and more].
-    elevation = elevation[:20_000]
-    for resolution in RESOLUTIONS:
-        counts = (elevation - elevation[0]) / resolution
-        # Rounding of the numbers themselves, which may be hundreds of metres.
-        slack = 1e-3 + 4 * np.spacing(np.abs(elevation).max()) / resolution
-        if np.round(counts).any() and np.abs(counts - np.round(counts)).max() < slack < 0.1:
-            return resolution
-    return 0.0
 
 
 def _doubts(paths: list[PathDescription]) -> list[str]:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.welch import ESTIMATE, FLAT, Spectra, cross_spectra, welch
+from movingfrf._basics.arrays import BoolArray, FloatArray
+from movingfrf._basics.welch import ESTIMATE, Spectra, cross_spectra, welch
 from movingfrf.results.labels import time_step_of
+from movingfrf.roughness.straight import straight
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +32,7 @@ class Pieces:
 PIECES = Pieces()
 
 
-def path_spectra(columns: FloatArray, step: float) -> Spectra:
+def path_spectra(columns: FloatArray, step: float, rough: BoolArray) -> Spectra:
     """Estimate the spectra of all paths of a profile, and that between the first and the last.
 
     Parameters
@@ -40,15 +41,16 @@ def path_spectra(columns: FloatArray, step: float) -> Spectra:
         Elevation [m].
     step : float
         Distance between stations [m].
+    rough : ndarray of bool, shape (path,)
+        Which paths are more than straight lines; the others have rounding for a spectrum.
 
     Returns
     -------
     Spectra
-        Spatial frequency [cycle/m] and densities [m³]; zero where an elevation is flat.
+        Spatial frequency [cycle/m] and densities [m³]; zero of straight lines.
     """
     found = cross_spectra(columns, step, segments=_pieces(len(columns) * step, PIECES.longest))
-    flat = np.ptp(columns, axis=0) < FLAT
-    return found._replace(own=found.own * ~flat, both=found.both * (not flat[[0, -1]].any()))
+    return found._replace(own=found.own * rough, both=found.both * rough[[0, -1]].all())
 
 
 def elevation_spectrum(result: xr.Dataset, contact: int) -> tuple[FloatArray, FloatArray]:
@@ -64,14 +66,15 @@ def elevation_spectrum(result: xr.Dataset, contact: int) -> tuple[FloatArray, Fl
     Returns
     -------
     spatial_frequency : ndarray
-        Spatial frequency [cycle/m]; empty on a flat road or a record of a few samples.
+        Spatial frequency [cycle/m]; empty on a flat or straight road or a record of a few samples.
     density : ndarray
         Spectral density [m³].
     """
     elevation = result.roughness.values[:, contact]
-    if len(elevation) < ESTIMATE.fewest_samples or np.ptp(elevation) < FLAT:
-        return np.empty(0), np.empty(0)
     step = result.attrs["speed"] * time_step_of(result)
+    few = len(elevation) < ESTIMATE.fewest_samples
+    if few or straight(step * np.arange(len(elevation)), elevation[:, None]).all():
+        return np.empty(0), np.empty(0)
     return welch(elevation, step, segments=_pieces(len(elevation) * step, PIECES.longest_seen))
 
 

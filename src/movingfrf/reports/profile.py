@@ -46,6 +46,7 @@ def tables(found: ProfileDescription) -> list[Table]:
         [
             Column("lowest", "m"),
             Column("highest", "m"),
+            Column("mean slope", "%"),
             Column("resolution", "mm"),
             Column("G", "10⁻⁶ m³"),
             Column("w", ""),
@@ -59,6 +60,7 @@ def tables(found: ProfileDescription) -> list[Table]:
                 [
                     number(path.lowest, 6),
                     number(path.highest, 6),
+                    f"{100 * path.slope:.2f}",
                     plain(1e3 * path.resolution) if path.resolution else "–",
                     _or_dash(1e6 * path.fit.roughness),
                     _or_dash(path.fit.waviness),

@@ -86,7 +86,7 @@ class Line:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.whole("samples", self.samples, least=1)
             check.positive("time_step", self.time_step, "s")
             check.not_negative("settling", self.settling, "s")

@@ -85,10 +85,10 @@ def moving_loads(
         at = check.array("positions", positions, "m", (None,))
         forces = check.array("force", force, "N", (None, at.size))
         points = at if observe is None else check.array("observe", observe, "m", (None,))
-        check.finite("speed", speed, "m/s")
-        check.positive("time_step", time_step, "s")
+        speed = check.finite("speed", speed, "m/s")
+        time_step = check.positive("time_step", time_step, "s")
         if truncation is not None:
-            check.not_negative("truncation", truncation, "Hz")
+            truncation = check.not_negative("truncation", truncation, "Hz")
         if not check.faults and (len(forces) < 2 or not at.size or not points.size):
             check.refuse("force", "must have at least two samples, one load and one observation point")
     # What settles here is the guideway, in a time that is short beside that of any vehicle.

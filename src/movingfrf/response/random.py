@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
-from movingfrf._basics.checks import Checks, SolveError, checking, shown
+from movingfrf._basics.checks import Checks, SolveError, checking, plain, shown
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.metrics.comfort import WEIGHTING_OF
@@ -184,8 +184,8 @@ def random_response(
     require_guideway(guideway)
     require_vehicle(vehicle)
     with checking() as check:
-        check.positive("speed", speed, "m/s")
-        check.positive("exposure", exposure, "s")
+        speed = check.positive("speed", speed, "m/s")
+        exposure = check.positive("exposure", exposure, "s")
         _check_spectrum(check, spectrum)
         shared = _checked_coherence(check, coherence, len(set(vehicle.paths)))
         wanted = None if frequency is None else check.array("frequency", frequency, "Hz", (None,))
@@ -262,6 +262,7 @@ def _checked_coherence(check: Checks, coherence: Coherence | float | None, paths
                 "for the same road on all of them, or 0.0 for roads without anything in common",
             )
         return 1.0
+    coherence = plain(coherence)
     if isinstance(coherence, Real):
         ratio = check.not_negative("coherence", coherence, "1")
         if ratio > 1:

@@ -71,7 +71,7 @@ def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: A
     require_guideway(guideway)
     require_vehicle(vehicle)
     with checking() as check:
-        check.positive("speed", speed, "m/s")
+        speed = check.positive("speed", speed, "m/s")
         lines = check.array("frequency", frequency, "Hz", (None,))
         if not check.faults and (not lines.size or lines.min() < 0):
             least = f"{lines.min():g} Hz" if lines.size else "none"

@@ -123,7 +123,7 @@ def rolled(profile: Profile, *, radius: float) -> Profile:
     [0.0, 0.0075, 0.01]
     """
     with checking() as check:
-        check.positive("radius", radius, "m")
+        radius = check.positive("radius", radius, "m")
     step = profile.require_even("rolling a wheel over it")
     elevation = profile.columns
     highest = elevation.copy()

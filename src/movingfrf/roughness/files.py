@@ -116,7 +116,7 @@ def read_profile(
     path = Path(file)
     with checking() as check:
         if repair_gaps is not None:
-            check.positive("repair_gaps", repair_gaps, "m")
+            repair_gaps = check.positive("repair_gaps", repair_gaps, "m")
         wanted = None if across is None else check.array("across", across, "m", (None,))
         if wanted is not None and not check.faults and not wanted.size:
             check.refuse("across", "must name at least one lateral position [m]")

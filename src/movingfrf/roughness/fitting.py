@@ -128,7 +128,9 @@ def fit_iso(spatial_frequency: FloatArray, density: FloatArray) -> IsoFit:
     used = [b for b in range(1, SMOOTHING_EDGES.size) if (band == b).any() and density[band == b].mean() > 0]
     if len(used) < FIT.fewest_bands:
         return _none(
-            (np.nan, np.nan), "the profile is level, or too short for a spectrum between 0.011 and 2.83 cycle/m"
+            (np.nan, np.nan),
+            "the profile is level or straight but for rounding, or too short for a spectrum between 0.011 and "
+            "2.83 cycle/m",
         )
     log_n = np.array([np.log(spatial_frequency[band == b]).mean() for b in used])
     log_density = np.array([np.log(density[band == b].mean()) for b in used])

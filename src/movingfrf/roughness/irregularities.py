@@ -45,11 +45,11 @@ def harmonic(
         If amplitude, wavelength or length is not positive.
     """
     with checking() as check:
-        check.positive("amplitude", amplitude, "m")
-        check.positive("wavelength", wavelength, "m")
-        check.positive("length", length, "m")
-        check.finite("phase", phase, "rad")
-        check.finite("start", start, "m")
+        amplitude = check.positive("amplitude", amplitude, "m")
+        wavelength = check.positive("wavelength", wavelength, "m")
+        length = check.positive("length", length, "m")
+        phase = check.finite("phase", phase, "rad")
+        start = check.finite("start", start, "m")
     distance = _stations(start, length, wavelength / 50)
     return Profile(
         distance,
@@ -85,12 +85,12 @@ def bump(*, height: float, width: float, at: float, length: float, start: float 
         If the height is zero, or the width or the length is not positive.
     """
     with checking() as check:
-        if check.finite("height", height, "m") == 0:
+        if (height := check.finite("height", height, "m")) == 0:
             check.refuse("height", "must not be zero")
-        check.positive("width", width, "m")
-        check.positive("length", length, "m")
-        check.finite("at", at, "m")
-        check.finite("start", start, "m")
+        width = check.positive("width", width, "m")
+        length = check.positive("length", length, "m")
+        at = check.finite("at", at, "m")
+        start = check.finite("start", start, "m")
     distance = _stations(start, length, width / 100)
     return Profile(
         distance,
@@ -135,14 +135,14 @@ def pothole(*, depth: float, width: float, edge: float, at: float, length: float
     [0.0, -0.02, -0.04]
     """
     with checking() as check:
-        if check.finite("depth", depth, "m") == 0:
+        if (depth := check.finite("depth", depth, "m")) == 0:
             check.refuse("depth", "must not be zero")
-        check.positive("width", width, "m")
-        if check.positive("edge", edge, "m") > width / 2:
+        width = check.positive("width", width, "m")
+        if (edge := check.positive("edge", edge, "m")) > width / 2:
             check.refuse("edge", f"must be at most half of the width, {width / 2:g} m, got {edge:g} m")
-        check.positive("length", length, "m")
-        check.finite("at", at, "m")
-        check.finite("start", start, "m")
+        length = check.positive("length", length, "m")
+        at = check.finite("at", at, "m")
+        start = check.finite("start", start, "m")
     distance = _stations(start, length, edge / 50)
     to_the_nearer_rim = width / 2 - np.abs(distance - (at + width / 2))
     return Profile(
@@ -189,14 +189,14 @@ def faulted_slabs(
     [0.0, 0.0, 0.00192]
     """
     with checking() as check:
-        if check.finite("height", height, "m") == 0:
+        if (height := check.finite("height", height, "m")) == 0:
             check.refuse("height", "must not be zero")
-        check.positive("spacing", spacing, "m")
-        if check.positive("edge", edge, "m") > spacing / 2:
+        spacing = check.positive("spacing", spacing, "m")
+        if (edge := check.positive("edge", edge, "m")) > spacing / 2:
             check.refuse("edge", f"must be at most half of the spacing, {spacing / 2:g} m, got {edge:g} m")
-        check.positive("length", length, "m")
-        check.finite("at", at, "m")
-        check.finite("start", start, "m")
+        length = check.positive("length", length, "m")
+        at = check.finite("at", at, "m")
+        start = check.finite("start", start, "m")
     distance = _stations(start, length, edge / 50)
     from_joint = _from_nearest(distance, at, spacing)
     return Profile(
@@ -263,17 +263,17 @@ def dipped_joints(
     [-0.004, -0.00104, 0.0]
     """
     with checking() as check:
-        if check.finite("depth", depth, "m") == 0:
+        if (depth := check.finite("depth", depth, "m")) == 0:
             check.refuse("depth", "must not be zero")
-        check.positive("reach", reach, "m")
-        check.positive("rounding", rounding, "m")
-        if check.positive("spacing", spacing, "m") < 2 * (reach + rounding) and not check.faults:
+        reach = check.positive("reach", reach, "m")
+        rounding = check.positive("rounding", rounding, "m")
+        if (spacing := check.positive("spacing", spacing, "m")) < 2 * (reach + rounding) and not check.faults:
             check.refuse(
                 "spacing", f"must be at least {2 * (reach + rounding):g} m, two rail ends, got {spacing:g} m"
             )
-        check.positive("length", length, "m")
-        check.finite("at", at, "m")
-        check.finite("start", start, "m")
+        length = check.positive("length", length, "m")
+        at = check.finite("at", at, "m")
+        start = check.finite("start", start, "m")
     distance = _stations(start, length, rounding / 10)
     away = np.hypot(_from_nearest(distance, at, spacing), rounding) - rounding
     return Profile(
@@ -336,14 +336,14 @@ def dipped_weld(
     [-0.00015, -0.0004]
     """
     with checking() as check:
-        if check.finite("depth", depth, "m") == 0:
+        if (depth := check.finite("depth", depth, "m")) == 0:
             check.refuse("depth", "must not be zero")
-        check.positive("width", width, "m")
-        check.finite("short_depth", short_depth, "m")
-        check.positive("short_width", short_width, "m")
-        check.positive("length", length, "m")
-        check.finite("at", at, "m")
-        check.finite("start", start, "m")
+        width = check.positive("width", width, "m")
+        short_depth = check.finite("short_depth", short_depth, "m")
+        short_width = check.positive("short_width", short_width, "m")
+        length = check.positive("length", length, "m")
+        at = check.finite("at", at, "m")
+        start = check.finite("start", start, "m")
     distance = _stations(start, length, min(width, short_width if short_depth else width) / 100)
     dips = [
         d * np.cos(np.pi * np.clip((distance - at) / wave, -0.5, 0.5)) ** 2
@@ -409,14 +409,14 @@ def wheel_flat(
     -0.00097
     """
     with checking() as check:
-        check.positive("radius", radius, "m")
-        if check.positive("chord", chord, "m") > radius and not check.faults:
+        radius = check.positive("radius", radius, "m")
+        if (chord := check.positive("chord", chord, "m")) > radius and not check.faults:
             check.refuse("chord", f"must be at most the radius, {radius:g} m, got {chord:g} m")
         if depth is not None:
-            check.positive("depth", depth, "m")
-        check.positive("length", length, "m")
-        check.finite("at", at, "m")
-        check.finite("start", start, "m")
+            depth = check.positive("depth", depth, "m")
+        length = check.positive("length", length, "m")
+        at = check.finite("at", at, "m")
+        start = check.finite("start", start, "m")
     distance = _stations(start, length, chord / 100)
     from_middle = np.abs(_from_nearest(distance, at, 2 * np.pi * radius))
     if depth is None:
@@ -478,15 +478,15 @@ def polygon(
     0.0001
     """
     with checking() as check:
-        check.positive("radius", radius, "m")
+        radius = check.positive("radius", radius, "m")
         waves = check.array("orders", orders, "1", (None,))
         if not waves.size or not ((waves >= 1) & (waves % 1 == 0)).all():
             check.refuse("orders", f"must be one or more whole numbers of at least 1, got {shown(orders)}")
         sizes = check.array("amplitudes", amplitudes, "m", waves.shape)
-        check.whole("seed", seed)
+        seed = check.whole("seed", seed)
         angles = None if phases is None else check.array("phases", phases, "rad", waves.shape)
-        check.positive("length", length, "m")
-        check.finite("start", start, "m")
+        length = check.positive("length", length, "m")
+        start = check.finite("start", start, "m")
     if angles is None:
         angles = np.random.default_rng(seed).uniform(0.0, 2 * np.pi, waves.size)
     distance = _stations(start, length, 2 * np.pi * radius / (50 * waves.max()))

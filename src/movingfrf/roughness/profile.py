@@ -56,11 +56,11 @@ class Profile:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             distance = check.array("distance", self.distance, "m", (None,))
-            paths = 1 if np.ndim(self.elevation) < 2 else None
-            shape = (None, None) if paths is None else (None,)
-            elevation = check.array("elevation", self.elevation, "m", shape)
+            elevation = check.array("elevation", self.elevation, "m", None)
+            if elevation.ndim not in (1, 2) and not check.faults:
+                check.refuse("elevation", f"must have shape (any) or (any, any), got {elevation.shape}")
             if not check.faults:
                 if distance.size < 4:
                     check.refuse("distance", f"must have at least 4 stations, got {distance.size}")
@@ -77,13 +77,12 @@ class Profile:
                         f"must increase, got {distance[n]:g} m followed by {distance[n + 1]:g} m at index {n + 1}",
                     )
             across = None if self.across is None else check.array("across", self.across, "m", (None,))
-            count = 1 if elevation.ndim == 1 else elevation.shape[1]
-            if across is not None and across.size != count:
-                check.refuse("across", f"must have one position [m] for each path, {count}, got {across.size}")
-        object.__setattr__(self, "distance", distance)
-        object.__setattr__(self, "elevation", elevation)
-        object.__setattr__(self, "steps", tuple(self.steps))
-        object.__setattr__(self, "across", None if across is None else tuple(across.tolist()))
+            count = elevation.shape[1] if elevation.ndim == 2 else 1
+            if across is not None:
+                check.keep("across", tuple(across.tolist()))
+                if across.size != count:
+                    check.refuse("across", f"must have one position [m] for each path, {count}, got {across.size}")
+            check.keep("steps", tuple(self.steps))
 
     @property
     def stations(self) -> FloatArray:

@@ -82,7 +82,7 @@ def realise(
     """
     with checking() as check:
         ask = _asked(check, spectrum, length, step, seed, start, across, coherence)
-    return _realised(ask, _phases, f"{spectrum}, seed {seed}")
+    return _realised(ask, _phases, f"{spectrum}, seed {ask.said_seed}")
 
 
 def realise_laplace(
@@ -156,20 +156,22 @@ def realise_laplace(
     with checking() as check:
         ask = _asked(check, spectrum, length, step, seed, start, across, coherence)
         # Nearer to a Gaussian road the gamma distribution has no meaningful shape.
-        if check.finite("kurtosis", kurtosis, "1") / 3 - 1 < 1e-9:
+        kurtosis = check.finite("kurtosis", kurtosis, "1")
+        if kurtosis / 3 - 1 < 1e-9:
             check.refuse("kurtosis", f"must be above 3, the kurtosis of a Gaussian road, got {kurtosis!r}")
-        if check.positive("segment", segment, "m") < step:
-            check.refuse("segment", f"must be at least one step of {step:g} m, got {segment:g} m")
+        segment = check.positive("segment", segment, "m")
+        if segment < ask.step:
+            check.refuse("segment", f"must be at least one step of {ask.step:g} m, got {segment:g} m")
 
     def draw(rng: np.random.Generator, paths: int, period: int) -> ComplexArray:
         spread = kurtosis / 3 - 1
-        place = np.floor(np.arange(period) * (step / segment) * (1 + 1e-12)).astype(int)
+        place = np.floor(np.arange(period) * (ask.step / segment) * (1 + 1e-12)).astype(int)
         deviation = np.sqrt(rng.gamma(1 / spread, spread, place[-1] + 1))[place]
         noise = rng.standard_normal((paths, period)) * deviation
         return scipy.fft.rfft(noise) / np.sqrt(period)
 
     laplace = f"Laplace road of kurtosis {kurtosis:g} over segments of {segment:g} m"
-    return _realised(ask, draw, f"{laplace}, {spectrum}, seed {seed}")
+    return _realised(ask, draw, f"{laplace}, {spectrum}, seed {ask.said_seed}")
 
 
 class _Asked(NamedTuple):
@@ -184,6 +186,11 @@ class _Asked(NamedTuple):
     across: FloatArray | None
     coherence: Coherence | None
 
+    @property
+    def said_seed(self) -> int | list[int]:
+        """The seeds as they were given: one alone, or a list."""
+        return self.seeds if self.in_columns and self.across is None else self.seeds[0]
+
 
 def _asked(
     check: Checks,
@@ -197,13 +204,13 @@ def _asked(
 ) -> _Asked:
     if not hasattr(spectrum, "variance_below"):
         check.refuse("spectrum", f"must be a spectrum, IsoRoad or another, got {shown(spectrum)}")
-    check.positive("length", length, "m")
-    check.positive("step", step, "m")
+    length = check.positive("length", length, "m")
+    step = check.positive("step", step, "m")
     several = isinstance(seed, (list, tuple))
     seeds = [check.whole("seed", number) for number in (seed if isinstance(seed, (list, tuple)) else [seed])]
     if not seeds:
         check.refuse("seed", "must be a whole number, or one for each path, got an empty list")
-    check.finite("start", start, "m")
+    start = check.finite("start", start, "m")
     if not check.faults and step * spectrum.band[1] > 0.5 * (1 + 1e-9):
         check.refuse(
             "step",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from movingfrf._basics.checks import plain
 from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.spectra.coherence import Coherence, presumed
 from movingfrf.roughness.spectra.spectrum import Spectrum
@@ -28,7 +29,7 @@ def in_common(
     """Say what the paths of a realisation have in common; None if only some of them are equal."""
     if across is not None:
         return coherence if coherence is not None else presumed(spectrum)
-    seeds = seed if isinstance(seed, Sequence) else [seed]
+    seeds = [plain(one) for one in (seed if isinstance(seed, Sequence) else [seed])]
     different = len(set(seeds))
     if different == 1:
         return 1.0

@@ -19,6 +19,7 @@ from movingfrf.response.truncation import EVERYWHERE, Truncation
 from movingfrf.results.findings import near_critical
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
+from movingfrf.roughness.straight import mean_slope, straight
 from movingfrf.scenarios.scenario import COUPLED_BY, NEWMARK, Drive, Passage, Scenario
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.journey import Journey
@@ -238,16 +239,20 @@ def _roughness(road: Road) -> list[tuple[str, str]]:
     profile = road.profile
     stations = profile.stations
     elevation = np.asarray(profile.elevation)
+    slopes = mean_slope(stations, profile.columns)
     lines = [
         ("source", road.description),
         ("stations", f"{stations.size} from {stations[0]:.6g} m to {stations[-1]:.6g} m"),
         ("elevation", f"{elevation.min():.4g} m to {elevation.max():.4g} m"),
+        ("mean slope", ", ".join(f"{100 * slope:.2f} %" for slope in dict.fromkeys(slopes.round(4)))),
     ]
     if road.spectrum is not None:
         return [*lines, ("fitted spectrum", "none: it was made from the spectrum above")]
     step = float(np.median(np.diff(stations)))
     for paths in profile.alike:
-        fit = fit_iso(*welch(profile.along(paths[0])(np.arange(stations[0], stations[-1], step)), step))
+        level = straight(stations, profile.columns[:, paths[:1]]).all()
+        even = profile.along(paths[0])(np.arange(stations[0], stations[-1], step))
+        fit = fit_iso(*((np.empty(0), np.empty(0)) if level else welch(even, step)))
         of = "" if profile.paths == 1 else f" of {wording.named_paths(paths)}"
         if fit.reason:
             lines.append((f"ISO 8608 class{of}", f"none: {fit.reason}"))

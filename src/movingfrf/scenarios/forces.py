@@ -98,7 +98,7 @@ def constant(
         If a time is negative or they are out of order.
     """
     with checking() as check:
-        check.finite("force", force, "N")
+        force = check.finite("force", force, "N")
     return _switched(lambda time: np.full_like(time, force), switch_on, switch_off, ramp)
 
 
@@ -145,7 +145,7 @@ def harmonics(
         size = check.array("amplitudes", amplitudes, "N", (None,))
         at = check.array("frequencies", frequencies, "Hz", (size.size,))
         phase = np.zeros(size.size) if phases is None else check.array("phases", phases, "rad", (size.size,))
-        check.finite("mean", mean, "N")
+        mean = check.finite("mean", mean, "N")
 
     def sum_of_sines(time: FloatArray) -> FloatArray:
         total = np.full_like(time, mean)
@@ -201,12 +201,12 @@ def random_sum(
     """
     most_waves = 100_000  # a limit of memory and patience [a convention]
     with checking() as check:
-        check.positive("rms", rms, "N")
-        check.not_negative("lowest", lowest, "Hz")
-        check.positive("highest", highest, "Hz")
-        if check.whole("count", count, least=1) > most_waves:
+        rms = check.positive("rms", rms, "N")
+        lowest = check.not_negative("lowest", lowest, "Hz")
+        highest = check.positive("highest", highest, "Hz")
+        if (count := check.whole("count", count, least=1)) > most_waves:
             check.refuse("count", f"must be at most {most_waves}, got {shown(count)}")
-        check.whole("seed", seed)
+        seed = check.whole("seed", seed)
         if not check.faults and lowest >= highest:
             check.refuse("highest", f"must be above lowest, {lowest:g} Hz, got {highest:g} Hz")
     random = np.random.default_rng(seed)
@@ -252,7 +252,7 @@ def tabulated(*, file: Path, column: int = 1) -> History:
     with checking() as check:
         if len(time) < 4 or (np.diff(time) <= 0).any():
             check.refuse("file", f"must hold at least 4 rows of increasing time [s], {file} does not")
-        check.whole("column", column, least=1)
+        column = check.whole("column", column, least=1)
         if not check.faults and column > forces.shape[1]:
             check.refuse("column", f"must be at most {forces.shape[1]}, the columns of {file}, got {column}")
     spline = CubicSpline(time, forces[:, column - 1])

@@ -250,8 +250,8 @@ def sim(
     Struct. 191, 2019.
     """
     with checking() as check:
-        check.positive("tolerance", tolerance, "1")
-        check.whole("iterations", iterations, least=1)
+        tolerance = check.positive("tolerance", tolerance, "1")
+        iterations = check.whole("iterations", iterations, least=1)
     return prepared_journey(
         Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend),
         (road, vehicle, profile),
@@ -301,7 +301,7 @@ def prepared_journey(
             check, road=(guideway, FiniteGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile)
         )
     with checking() as check:
-        check.not_negative("run_in", run_in, "s")
+        run_in = check.not_negative("run_in", run_in, "s")
         row = scheme_named(check, scheme)
         places = check.array("observe", observe, "m", (None,))
         if places.size and (superposed or guideway.travels):

@@ -257,6 +257,8 @@ def duhamel_loads(
         at = check.array("positions", positions, "m", (None,))
         forces = check.array("force", force, "N", (None, at.size))
         points = at if observe is None else check.array("observe", observe, "m", (None,))
+        speed = check.finite("speed", speed, "m/s")
+        time_step = check.positive("time_step", time_step, "s")
         if not check.faults and (len(forces) < 2 or not at.size or not points.size):
             check.refuse("force", "must have at least two samples, one load and one observation point")
     with checking() as check:

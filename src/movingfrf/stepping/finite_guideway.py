@@ -11,7 +11,7 @@ import scipy.sparse as sparse
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray, IntArray
-from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf._basics.checks import Checks, checking, real_numbers, shown
 from movingfrf.stepping.factors import is_definite
 
 # Positions [m], order of the derivative and, on a guideway with a width, places across [m] → one row per position,
@@ -98,9 +98,9 @@ class FiniteGuideway:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             for name, unit in (("mass", "kg"), ("damping", "N s/m"), ("stiffness", "N/m")):
-                object.__setattr__(self, name, _symmetric(check, name, getattr(self, name), unit))
+                check.keep(name, _symmetric(check, name, getattr(self, name), unit))
             first, last = check.pair("interval", self.interval, "m", signed=True)
             if not check.faults and not first < last:
                 check.refuse("interval", f"must begin before it ends, got {first!r} m to {last!r} m")
@@ -108,20 +108,20 @@ class FiniteGuideway:
             check.not_negative("width", self.width, "m")
             if self.travels and not self.column > 0:
                 check.refuse("column", f"must be positive on a road that travels, got {self.column!r}")
-            if not check.faults:
-                shapes = {matrix.shape for matrix in (self.mass, self.damping, self.stiffness)}
-                if len(shapes) > 1:
-                    check.refuse("mass", f"damping and stiffness must have one shape, got {sorted(shapes)}")
-                if not (self.mass.diagonal() > 0).all():
-                    place = int((self.mass.diagonal() <= 0).argmax())
-                    check.refuse(
-                        "mass",
-                        f"must be positive definite, got {self.mass.diagonal()[place]!r} kg on its diagonal "
-                        f"at index {place}",
-                    )
-            if not check.faults:
-                _check_definite(check, self)
-                _check_rows(check, self)
+        with checking() as check:
+            shapes = {matrix.shape for matrix in (self.mass, self.damping, self.stiffness)}
+            if len(shapes) > 1:
+                check.refuse("mass", f"damping and stiffness must have one shape, got {sorted(shapes)}")
+            if not (self.mass.diagonal() > 0).all():
+                place = int((self.mass.diagonal() <= 0).argmax())
+                check.refuse(
+                    "mass",
+                    f"must be positive definite, got {self.mass.diagonal()[place]!r} kg on its diagonal "
+                    f"at index {place}",
+                )
+        with checking() as check:
+            _check_definite(check, self)
+            _check_rows(check, self)
 
     @property
     def dofs(self) -> int:
@@ -160,7 +160,7 @@ def _symmetric(check: Checks, name: str, given: Any, unit: str) -> sparse.csc_ar
     # Asymmetry, relative to the largest entry, that is rounding [1e-12 to 1e-6].
     rounding = 1e-9
     try:
-        matrix = sparse.csc_array(given, dtype=float)
+        matrix = sparse.csc_array(given if sparse.issparse(given) else real_numbers(given), dtype=float)
     except (TypeError, ValueError):
         check.refuse(name, f"must be a square matrix [{unit}], got {shown(given)}")
         return sparse.csc_array((1, 1))

@@ -157,14 +157,16 @@ def finite_plate(
                 "must be an Euler–Bernoulli beam on springs or a shear layer to be spread over its width, got "
                 f"{shown(track)}",
             )
-        check.positive("width", width, "m")
+        width = check.positive("width", width, "m")
         count_across = check.whole("across", across, least=1)
-        check.not_negative("poisson", poisson, "1")
-        check.positive("transverse", transverse, "1")
+        poisson = check.not_negative("poisson", poisson, "1")
+        transverse = check.positive("transverse", transverse, "1")
         if not check.faults and not poisson < 0.5:
             check.refuse("poisson", f"must be less than 0.5, got {poisson!r}")
+        first, last = check.finite("first", first, "m"), check.finite("last", last, "m")
+        element = check.positive("element", element, "m")
         both, length = require_stretch(check, (first, last), element, ends, absorbing, travels)
-        check.not_negative("band", band, "Hz")
+        band = check.not_negative("band", band, "Hz")
     assert isinstance(track.beam, EulerBernoulliBeam)
     assert isinstance(track.foundation, (Spring, ShearLayer))
     with checking() as check:

@@ -161,8 +161,10 @@ def finite_track(
     with checking() as check:
         if not isinstance(track, Track) or not isinstance(track.beam, EulerBernoulliBeam):
             check.refuse("track", f"must have an Euler–Bernoulli beam to be cut into elements, got {shown(track)}")
+        first, last = check.finite("first", first, "m"), check.finite("last", last, "m")
+        element = check.positive("element", element, "m")
         both, length = require_stretch(check, (first, last), element, ends, absorbing, travels)
-        check.not_negative("band", band, "Hz")
+        band = check.not_negative("band", band, "Hz")
     assert isinstance(track.beam, EulerBernoulliBeam)
     layers = _layers(track)
     with checking() as check:
@@ -252,8 +254,7 @@ def require_stretch(
     absorbing : float
         Length of the absorbing stretches [m].
     """
-    first, last = check.finite("first", interval[0], "m"), check.finite("last", interval[1], "m")
-    check.positive("element", element, "m")
+    first, last = interval
     usual = min(ABSORPTION.length, max(last - first, 0.0) / 3)
     length = check.not_negative("absorbing", usual if absorbing is None else absorbing, "m")
     both = (ends, ends) if isinstance(ends, str) else tuple(ends)

@@ -161,15 +161,15 @@ def moving_impulse_response(
     with checking() as check:
         at = check.array("offsets", offsets, "m", (None,))
         beside, sources = (
-            check.array(name, np.full(at.shape, value) if np.ndim(value) == 0 else value, "m", at.shape)
+            check.spread(name, value, "m", at.shape)
             for name, value in (("across", across), ("strike_across", strike_across))
         )
-        for name, value, unit in (("speed", speed, "m/s"), ("strike", strike, "m")):
-            check.finite(name, value, unit)
-        check.positive("time_step", time_step, "s")
-        check.positive("band", band, "Hz")
+        speed = check.finite("speed", speed, "m/s")
+        strike = check.finite("strike", strike, "m")
+        time_step = check.positive("time_step", time_step, "s")
+        band = check.positive("band", band, "Hz")
         if duration is not None:
-            check.positive("duration", duration, "s")
+            duration = check.positive("duration", duration, "s")
         row = scheme_named(check, scheme)
         if not several or not all(
             isinstance(guideway, FiniteGuideway) and not guideway.travels for guideway in several

@@ -88,9 +88,9 @@ def newmark_loads(
         at = check.array("positions", positions, "m", (None,))
         forces = check.array("force", force, "N", (None, at.size))
         points = at if observe is None else check.array("observe", observe, "m", (None,))
-        check.finite("speed", speed, "m/s")
-        check.positive("time_step", time_step, "s")
-        check.finite("start", start, "m")
+        speed = check.finite("speed", speed, "m/s")
+        time_step = check.positive("time_step", time_step, "s")
+        start = check.finite("start", start, "m")
         row = scheme_named(check, scheme)
         if not check.faults and (len(forces) < 2 or not at.size or not points.size):
             check.refuse("force", "must have at least two samples, one load and one observation point")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from numbers import Real
 from typing import Any, NamedTuple
 
-from movingfrf._basics.checks import Checks, shown
+from movingfrf._basics.checks import Checks, plain, shown
 
 
 class Rule(NamedTuple):
@@ -95,10 +95,9 @@ SCHEMES = {
 
 def scheme_named(check: Checks, given: str | Scheme) -> Scheme:
     """Find a scheme by its name, or take the row that is given."""
-    if isinstance(given, Scheme):
-        return given
-    if isinstance(given, tuple) and 2 <= len(given) <= 4 and all(isinstance(number, Real) for number in given):
-        return Scheme(*given)
+    numbers = [plain(number) for number in given] if isinstance(given, tuple) else []
+    if 2 <= len(numbers) <= 4 and all(isinstance(number, Real) for number in numbers):
+        return Scheme(*map(float, numbers))
     if not isinstance(given, str) or given not in SCHEMES:
         check.refuse("scheme", f"must be a Scheme or one of {', '.join(SCHEMES)}, got {shown(given)}")
         return SCHEMES["average_acceleration"]

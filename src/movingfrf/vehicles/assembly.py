@@ -48,7 +48,7 @@ class Body:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.positive("mass", self.mass, "kg")
             for name in ("pitch_inertia", "roll_inertia"):
                 if getattr(self, name) is not None:
@@ -116,7 +116,7 @@ class Suspension:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.text("upper", self.upper)
             check.text("lower", self.lower)
             stiffness = check.not_negative("stiffness", self.stiffness, "N/m")
@@ -154,7 +154,7 @@ class Hinge:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             if check.text("first", self.first) == check.text("second", self.second):
                 check.refuse("second", f"must be another body than the first, got {self.second!r} for both")
             check.finite("position", self.position, "m")

@@ -51,13 +51,13 @@ def quarter_car(
     [1.08, 11.68]
     """
     with checking() as check:
-        check.positive("body_mass", body_mass, "kg")
-        check.positive("wheel_mass", wheel_mass, "kg")
-        check.positive("suspension_stiffness", suspension_stiffness, "N/m")
-        check.not_negative("suspension_damping", suspension_damping, "N s/m")
-        check.positive_or_infinite("tyre_stiffness", tyre_stiffness, "N/m")
-        check.not_negative("tyre_damping", tyre_damping, "N s/m")
-        check.not_negative("footprint", footprint, "m")
+        body_mass = check.positive("body_mass", body_mass, "kg")
+        wheel_mass = check.positive("wheel_mass", wheel_mass, "kg")
+        suspension_stiffness = check.positive("suspension_stiffness", suspension_stiffness, "N/m")
+        suspension_damping = check.not_negative("suspension_damping", suspension_damping, "N s/m")
+        tyre_stiffness = check.positive_or_infinite("tyre_stiffness", tyre_stiffness, "N/m")
+        tyre_damping = check.not_negative("tyre_damping", tyre_damping, "N s/m")
+        footprint = check.not_negative("footprint", footprint, "m")
     return assemble(
         bodies=[Body(mass=body_mass, name="body"), Body(mass=wheel_mass, name="wheel")],
         suspensions=[
@@ -117,14 +117,14 @@ def half_car(
         rear one.
     """
     with checking() as check:
-        check.positive("body_mass", body_mass, "kg")
-        check.positive("pitch_inertia", pitch_inertia, "kg m²")
+        body_mass = check.positive("body_mass", body_mass, "kg")
+        pitch_inertia = check.positive("pitch_inertia", pitch_inertia, "kg m²")
         wheels = check.pair("wheel_masses", wheel_masses, "kg")
         (kf, kr) = check.pair("suspension_stiffness", suspension_stiffness, "N/m")
         (cf, cr) = check.pair("suspension_damping", suspension_damping, "N s/m", positive=False)
         tyres = check.pair("tyre_stiffness", tyre_stiffness, "N/m", infinite=True)
         tyre_dampers = check.pair("tyre_damping", tyre_damping, "N s/m", positive=False)
-        check.not_negative("footprint", footprint, "m")
+        footprint = check.not_negative("footprint", footprint, "m")
         front, rear = _in_order(check, "axles", axles, "have the front axle ahead of the rear one")
 
     names = ["front_wheel", "rear_wheel"]
@@ -207,9 +207,9 @@ def full_car(
     [0.84, 1.13, 1.48]
     """
     with checking() as check:
-        check.positive("body_mass", body_mass, "kg")
-        check.positive("pitch_inertia", pitch_inertia, "kg m²")
-        check.positive("roll_inertia", roll_inertia, "kg m²")
+        body_mass = check.positive("body_mass", body_mass, "kg")
+        pitch_inertia = check.positive("pitch_inertia", pitch_inertia, "kg m²")
+        roll_inertia = check.positive("roll_inertia", roll_inertia, "kg m²")
         wheels = check.pair("wheel_masses", wheel_masses, "kg")
         springs = check.pair("suspension_stiffness", suspension_stiffness, "N/m")
         dampers = check.pair("suspension_damping", suspension_damping, "N s/m", positive=False)
@@ -217,7 +217,7 @@ def full_car(
         tyre_dampers = check.pair("tyre_damping", tyre_damping, "N s/m", positive=False)
         along = _in_order(check, "axles", axles, "have the front axle ahead of the rear one")
         aside = _in_order(check, "sides", sides, "have the left wheels left of the right ones")
-        check.not_negative("footprint", footprint, "m")
+        footprint = check.not_negative("footprint", footprint, "m")
     corners = {
         f"{end}_{hand}": (axle, side)
         for axle, end in enumerate(("front", "rear"))

@@ -11,7 +11,7 @@ import scipy.linalg
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray, require_memory
-from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf.vehicles.vehicle import Vehicle
 
 
@@ -58,9 +58,7 @@ def convoy(
         name, given = ("gaps", gaps) if gaps is not None else ("spacing", spacing)
         between = len(vehicles) - 1
         assert given is not None
-        distances = np.array(
-            check.array(name, np.full(between, given) if not np.ndim(given) else given, "m", (between,))
-        )
+        distances = np.array(check.spread(name, given, "m", (between,)))
         if gaps is not None and not check.faults:
             rears = np.array([one.positions.min() for one in vehicles[:-1]])
             fronts = np.array([one.positions.max() for one in vehicles[1:]])
@@ -117,8 +115,8 @@ def train(*, car: Vehicle, count: int, spacing: float) -> Vehicle:
     """
     with checking() as check:
         check.listed("car", [car], Vehicle)
-        check.whole("count", count, least=1)
-        check.positive("spacing", spacing, "m")
+        count = check.whole("count", count, least=1)
+        spacing = check.positive("spacing", spacing, "m")
     # Two dozen square matrices of all degrees of freedom, while they are joined and checked.
     require_memory(200.0 * (count * len(car.dof_names)) ** 2, f"a train of {count} cars")
     return convoy([car] * count, spacing=spacing)
@@ -179,12 +177,12 @@ def seated(
     """
     with checking() as check:
         check.listed("vehicle", [vehicle], Vehicle)
-        check.positive("driver_mass", driver_mass, "kg")
-        check.positive("cushion_stiffness", cushion_stiffness, "N/m")
-        check.not_negative("cushion_damping", cushion_damping, "N s/m")
-        if check.not_negative("seat_mass", seat_mass, "kg"):
-            check.positive("seat_stiffness", seat_stiffness, "N/m")
-            check.not_negative("seat_damping", seat_damping, "N s/m")
+        driver_mass = check.positive("driver_mass", driver_mass, "kg")
+        cushion_stiffness = check.positive("cushion_stiffness", cushion_stiffness, "N/m")
+        cushion_damping = check.not_negative("cushion_damping", cushion_damping, "N s/m")
+        if seat_mass := check.not_negative("seat_mass", seat_mass, "kg"):
+            seat_stiffness = check.positive("seat_stiffness", seat_stiffness, "N/m")
+            seat_damping = check.not_negative("seat_damping", seat_damping, "N s/m")
         elif seat_stiffness or seat_damping:
             check.refuse("seat_mass", "must be positive for a seat with a stiffness or damping of its own [kg]")
     with checking() as check:
@@ -266,12 +264,15 @@ def on_paths(vehicle: Vehicle, paths: Sequence[int]) -> Vehicle:
     """
     with checking() as check:
         check.listed("vehicle", [vehicle], Vehicle)
-        check.listed("paths", paths, int)
+        if not isinstance(paths, (list, tuple)):
+            check.refuse("paths", f"must be a list of whole numbers, got {shown(paths)}")
+    with checking() as check:
+        numbers = [check.whole(f"paths[{n}]", path) for n, path in enumerate(paths)]
     with checking() as check:
         if len(paths) != len(vehicle.contacts):
             check.refuse(
                 "paths", f"must be one number per contact, {len(vehicle.contacts)} in all, got {len(paths)}"
             )
     return replace(
-        vehicle, contacts=[replace(one, path=path) for one, path in zip(vehicle.contacts, paths, strict=True)]
+        vehicle, contacts=[replace(one, path=path) for one, path in zip(vehicle.contacts, numbers, strict=True)]
     )

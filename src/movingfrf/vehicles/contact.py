@@ -57,7 +57,7 @@ class Contact:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.finite("position", self.position, "m")
             check.not_negative("damping", self.damping, "N s/m")
             if check.positive_or_infinite("stiffness", self.stiffness, "N/m") == np.inf and self.damping:

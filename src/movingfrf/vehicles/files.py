@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from movingfrf._basics.array_file import Arrays, Content, read_arrays, write_arrays
-from movingfrf._basics.checks import Checks, ParameterError, checking
+from movingfrf._basics.checks import Checks, ParameterError, checking, real_numbers
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -164,10 +164,9 @@ def _table(check: Checks, name: str, value: Any) -> np.ndarray:
 
 def _real(value: Any) -> np.ndarray:
     """Real numbers; a loss factor as an imaginary part is none."""
-    array = np.asarray(value)
-    if array.dtype.kind == "c":
+    if np.iscomplexobj(value):
         raise ValueError("complex ones, as for hysteretic damping, are not supported")
-    return array.astype(float)
+    return real_numbers(value)
 
 
 def _row(check: Checks, name: str, value: Any, count: int) -> np.ndarray:

@@ -49,7 +49,7 @@ class Journey:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.positive("speed", self.speed, "m/s")
             check.positive("duration", self.duration, "s")
             check.positive("time_step", self.time_step, "s")

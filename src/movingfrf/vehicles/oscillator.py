@@ -52,14 +52,11 @@ def sprung_mass(
     [61312.5]
     """
     with checking() as check:
-        check.positive("mass", mass, "kg")
-        check.positive("stiffness", stiffness, "N/m")
-        for name, value, unit in (
-            ("damping", damping, "N s/m"),
-            ("wheel_mass", wheel_mass, "kg"),
-            ("footprint", footprint, "m"),
-        ):
-            check.not_negative(name, value, unit)
+        mass = check.positive("mass", mass, "kg")
+        stiffness = check.positive("stiffness", stiffness, "N/m")
+        damping = check.not_negative("damping", damping, "N s/m")
+        wheel_mass = check.not_negative("wheel_mass", wheel_mass, "kg")
+        footprint = check.not_negative("footprint", footprint, "m")
     body = Body(mass=mass, name="body")
     if not wheel_mass:
         spring = Contact(position=0.0, stiffness=stiffness, damping=damping, footprint=footprint)

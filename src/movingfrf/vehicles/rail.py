@@ -45,8 +45,8 @@ def hertzian_stiffness(load: float, *, wheel_radius: float, worn: bool = True) -
     1.46
     """
     with checking() as check:
-        check.positive("load", load, "N")
-        check.positive("wheel_radius", wheel_radius, "m")
+        load = check.positive("load", load, "N")
+        wheel_radius = check.positive("wheel_radius", wheel_radius, "m")
     constant = 3.86e-8 * wheel_radius**-0.115 if worn else 4.57e-8 * wheel_radius**-0.149
     return 1.5 / constant * load ** (1 / 3)
 
@@ -79,8 +79,8 @@ def wheelset(*, mass: float, contact_stiffness: float = np.inf, contact_damping:
     [17658.0]
     """
     with checking() as check:
-        check.positive("mass", mass, "kg")
-        _check_contact(check, contact_stiffness, contact_damping)
+        mass = check.positive("mass", mass, "kg")
+        contact_stiffness, contact_damping = _contact_values(check, contact_stiffness, contact_damping)
     return assemble(
         bodies=[Body(mass=mass, name="wheelset")],
         contacts=[_contact(0.0, contact_stiffness, contact_damping, 1)],
@@ -139,18 +139,18 @@ def bogie(
         If a mass, stiffness or distance is not positive, or a damping is negative.
     """
     with checking() as check:
-        check.positive("frame_mass", frame_mass, "kg")
-        check.positive("frame_pitch_inertia", frame_pitch_inertia, "kg m²")
-        check.positive("wheelset_mass", wheelset_mass, "kg")
-        check.positive("primary_stiffness", primary_stiffness, "N/m")
-        check.not_negative("primary_damping", primary_damping, "N s/m")
+        frame_mass = check.positive("frame_mass", frame_mass, "kg")
+        frame_pitch_inertia = check.positive("frame_pitch_inertia", frame_pitch_inertia, "kg m²")
+        wheelset_mass = check.positive("wheelset_mass", wheelset_mass, "kg")
+        primary_stiffness = check.positive("primary_stiffness", primary_stiffness, "N/m")
+        primary_damping = check.not_negative("primary_damping", primary_damping, "N s/m")
         half = 0.5 * check.positive("axle_spacing", axle_spacing, "m")
-        if check.not_negative("body_mass", body_mass, "kg"):
-            check.positive("secondary_stiffness", secondary_stiffness, "N/m")
-            check.not_negative("secondary_damping", secondary_damping, "N s/m")
+        if body_mass := check.not_negative("body_mass", body_mass, "kg"):
+            secondary_stiffness = check.positive("secondary_stiffness", secondary_stiffness, "N/m")
+            secondary_damping = check.not_negative("secondary_damping", secondary_damping, "N s/m")
         elif secondary_stiffness or secondary_damping:
             check.refuse("body_mass", "must be positive above a secondary suspension [kg]")
-        _check_contact(check, contact_stiffness, contact_damping)
+        contact_stiffness, contact_damping = _contact_values(check, contact_stiffness, contact_damping)
     places = {"wheelset_1": half, "wheelset_2": -half}
     carried = [Body(mass=body_mass, name="body")] if body_mass else []
     above = (
@@ -237,16 +237,16 @@ def carriage(
     [10.78, 8.22, -8.22, -10.78]
     """
     with checking() as check:
-        check.positive("body_mass", body_mass, "kg")
-        check.positive("body_pitch_inertia", body_pitch_inertia, "kg m²")
-        check.positive("bogie_mass", bogie_mass, "kg")
-        check.positive("bogie_pitch_inertia", bogie_pitch_inertia, "kg m²")
-        check.positive("wheelset_mass", wheelset_mass, "kg")
-        check.positive("primary_stiffness", primary_stiffness, "N/m")
-        check.not_negative("primary_damping", primary_damping, "N s/m")
-        check.positive("secondary_stiffness", secondary_stiffness, "N/m")
-        check.not_negative("secondary_damping", secondary_damping, "N s/m")
-        _check_contact(check, contact_stiffness, contact_damping)
+        body_mass = check.positive("body_mass", body_mass, "kg")
+        body_pitch_inertia = check.positive("body_pitch_inertia", body_pitch_inertia, "kg m²")
+        bogie_mass = check.positive("bogie_mass", bogie_mass, "kg")
+        bogie_pitch_inertia = check.positive("bogie_pitch_inertia", bogie_pitch_inertia, "kg m²")
+        wheelset_mass = check.positive("wheelset_mass", wheelset_mass, "kg")
+        primary_stiffness = check.positive("primary_stiffness", primary_stiffness, "N/m")
+        primary_damping = check.not_negative("primary_damping", primary_damping, "N s/m")
+        secondary_stiffness = check.positive("secondary_stiffness", secondary_stiffness, "N/m")
+        secondary_damping = check.not_negative("secondary_damping", secondary_damping, "N s/m")
+        contact_stiffness, contact_damping = _contact_values(check, contact_stiffness, contact_damping)
         apart = check.positive("bogie_spacing", bogie_spacing, "m")
         wheels = check.positive("axle_spacing", axle_spacing, "m")
         if not check.faults and wheels >= apart:
@@ -283,10 +283,12 @@ def carriage(
     )
 
 
-def _check_contact(check: Checks, stiffness: float, damping: float) -> None:
+def _contact_values(check: Checks, stiffness: float, damping: float) -> tuple[float, float]:
     stiffness = check.positive_or_infinite("contact_stiffness", stiffness, "N/m")
-    if check.not_negative("contact_damping", damping, "N s/m") and stiffness == np.inf:
+    damping = check.not_negative("contact_damping", damping, "N s/m")
+    if damping and stiffness == np.inf:
         check.refuse("contact_damping", f"must be 0 at a rigid contact, got {damping!r} N s/m")
+    return stiffness, damping
 
 
 def _contact(position: float, stiffness: float, damping: float, number: int) -> Contact:

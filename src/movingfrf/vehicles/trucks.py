@@ -53,7 +53,7 @@ class Axle(_RunningGear):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.finite("position", self.position, "m")
             _check_axle(check, self)
 
@@ -110,7 +110,7 @@ class WalkingBeam(_RunningGear):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             front, rear = check.pair("positions", self.positions, "m", signed=True)
             if front <= rear:
                 check.refuse("positions", f"must have the front axle first, got {self.positions!r} m")
@@ -162,15 +162,14 @@ class Unit:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.positive("mass", self.mass, "kg")
             check.positive("pitch_inertia", self.pitch_inertia, "kg m²")
             check.finite("position", self.position, "m")
             check.text("name", self.name)
             if self.roll_inertia is not None:
                 check.positive("roll_inertia", self.roll_inertia, "kg m²")
-            axles = check.listed("axles", self.axles, _RunningGear, least=0)
-        object.__setattr__(self, "axles", axles)
+            check.listed("axles", self.axles, _RunningGear, least=0)
 
 
 def truck(
@@ -220,8 +219,8 @@ def truck(
         if not check.faults and joints.size != max(len(units) - 1, 0):
             check.refuse("hitches", f"must be one less than units, {len(units) - 1} in all, got {joints.size}")
         if sides is not None:
-            left, right = check.pair("sides", sides, "m", signed=True)
-            if left <= right:
+            sides = check.pair("sides", sides, "m", signed=True)
+            if sides[0] <= sides[1]:
                 check.refuse("sides", f"must have the left wheels left of the right ones, got {sides!r} m")
     corners = list(_corners(units, names, sides))
     return assemble(

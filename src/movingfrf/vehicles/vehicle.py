@@ -74,20 +74,17 @@ class Vehicle(Remembering):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             contacts, names = check.listed("contacts", self.contacts, Contact), _names(check, self.dof_names)
             dofs = len(names)
-            checked: dict[str, object] = {"contacts": contacts, "dof_names": names}
             for name, unit in (("mass", "kg"), ("damping", "N s/m"), ("stiffness", "N/m")):
-                checked[name] = check.array(name, getattr(self, name), unit, (dofs, dofs))
-            checked["contact_map"] = check.array("contact_map", self.contact_map, "m/m", (len(contacts), dofs))
-            checked["vertical"] = check.array("vertical", self.vertical, "m/m", (dofs,))
-            if not check.faults:
-                _check_definite(check, "mass", checked["mass"], strictly=True)
-                _check_definite(check, "damping", checked["damping"], strictly=False)
-                _check_definite(check, "stiffness", checked["stiffness"], strictly=False)
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+                check.array(name, getattr(self, name), unit, (dofs, dofs))
+            check.array("contact_map", self.contact_map, "m/m", (len(contacts), dofs))
+            check.array("vertical", self.vertical, "m/m", (dofs,))
+        with checking() as check:
+            _check_definite(check, "mass", self.mass, strictly=True)
+            _check_definite(check, "damping", self.damping, strictly=False)
+            _check_definite(check, "stiffness", self.stiffness, strictly=False)
         with checking() as check:
             _check_free(check, self)
             _check_held(check, self)

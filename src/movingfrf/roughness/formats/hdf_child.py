@@ -26,21 +26,27 @@ def text(value: Any) -> str:
     return value if isinstance(value, str) else ""
 
 
-def number_attribute(item: h5py.Dataset, attribute: str, default: float) -> float:
-    """Read an attribute by which netCDF packs numbers; HDF5 may hold it as an array of one."""
-    value = np.asarray(item.attrs.get(attribute, default))
-    return float(value.ravel()[0]) if value.size == 1 and value.dtype.kind in "iuf" else default
+def numbers_attribute(item: h5py.Dataset, attribute: str) -> np.ndarray:
+    """Read an attribute of numbers, of which netCDF has one or a few; none if it is something else."""
+    value = np.asarray(item.attrs.get(attribute, ()))
+    return value.astype(float).ravel() if value.dtype.kind in "iuf" else np.empty(0)
 
 
 def values(item: h5py.Dataset) -> np.ndarray:
-    """Read an array as netCDF means it: scaled, and nan where it is filled."""
-    stored = np.asarray(item[()])
-    found = stored.astype(float)
-    fill = number_attribute(item, "_FillValue", float("nan"))
-    if np.isfinite(fill):
-        found[stored == fill] = np.nan
+    """Read an array as netCDF means it: scaled, and nan where it is filled, missing or beyond what is valid."""
+    stored = np.asarray(item[()]).astype(float)
+    found = stored.copy()
+    for none in (*numbers_attribute(item, "_FillValue"), *numbers_attribute(item, "missing_value")):
+        found[stored == none] = np.nan
+    ends = numbers_attribute(item, "valid_range")
+    low, high = ends if ends.size == 2 else (-np.inf, np.inf)
+    for least in (low, *numbers_attribute(item, "valid_min")):
+        found[stored < least] = np.nan
+    for most in (high, *numbers_attribute(item, "valid_max")):
+        found[stored > most] = np.nan
+    scale, offset = (numbers_attribute(item, name) for name in ("scale_factor", "add_offset"))
     with np.errstate(all="ignore"):  # whatever a damaged file says is looked at later
-        return found * number_attribute(item, "scale_factor", 1.0) + number_attribute(item, "add_offset", 0.0)
+        return found * (scale[0] if scale.size == 1 else 1.0) + (offset[0] if offset.size == 1 else 0.0)
 
 
 def extract(file: Path, folder: Path, most: float) -> None:

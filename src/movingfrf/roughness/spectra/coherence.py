@@ -76,7 +76,7 @@ class IsotropicCoherence:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             if check.positive("waviness", self.waviness, "1") > LARGEST_WAVINESS:
                 check.refuse("waviness", f"must be at most {LARGEST_WAVINESS:g}, got {self.waviness!r}")
 
@@ -96,7 +96,7 @@ class IsotropicCoherence:
             γ, dimensionless.
         """
         order = self.waviness / 2
-        z = 2 * np.pi * np.multiply.outer(spatial_frequency, np.abs(apart))
+        z = 2 * np.pi * _products(spatial_frequency, apart)
         # Below it the Bessel function of the largest waviness, K₅, would overflow. γ differs from 1 by some z^w
         # there, and by z² ln z at the least: by rounding alone for roads, whose w is 1 and more [1e-60 to 1e-17].
         shown = np.maximum(z, 1e-60)
@@ -131,7 +131,7 @@ class ExponentialCoherence:
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.not_negative("decay", self.decay, "1")
 
     def between(self, spatial_frequency: FloatArray, apart: FloatArray) -> FloatArray:
@@ -149,7 +149,16 @@ class ExponentialCoherence:
         ndarray, shape (frequency, *s)
             γ, dimensionless.
         """
-        return np.exp(-self.decay * np.multiply.outer(spatial_frequency, np.abs(apart)))
+        return np.exp(-self.decay * _products(spatial_frequency, apart))
+
+
+def _products(spatial_frequency: FloatArray, apart: FloatArray) -> FloatArray:
+    """Distances between paths over wavelengths, shape (frequency, *s)."""
+    with checking() as check:
+        n = check.array("spatial_frequency", spatial_frequency, "cycle/m", None)
+        distance = np.abs(check.array("apart", apart, "m", None))
+    products: FloatArray = np.multiply.outer(n, distance)
+    return products
 
 
 def presumed(spectrum: Spectrum) -> Coherence | None:

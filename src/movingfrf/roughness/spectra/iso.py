@@ -58,11 +58,10 @@ class IsoRoad(BandLimited):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.positive("roughness", self.roughness, "m³")
             check_waviness(check, self.waviness)
-            band = checked_band(check, self.band)
-        object.__setattr__(self, "band", band)
+            checked_band(check, self.band)
 
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""

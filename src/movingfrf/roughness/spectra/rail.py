@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import checking, shown
+from movingfrf._basics.checks import checking, plain, shown
 from movingfrf.roughness.spectra.spectrum import BandLimited, band_in_words, checked_band, power_integral
 
 # Wavelengths between which the FRA's forms hold: 5 and 1000 feet.
@@ -75,7 +75,7 @@ class FraTrack(BandLimited):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        _store_checked(self, self.roughness, "m² rad/m", self.band)
+        _check_and_store(self, self.roughness, "m² rad/m", self.band)
 
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""
@@ -170,7 +170,7 @@ class FrybaTrack(BandLimited):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        _store_checked(self, self.roughness, "m", self.band)
+        _check_and_store(self, self.roughness, "m", self.band)
 
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""
@@ -254,7 +254,7 @@ class GermanTrack(BandLimited):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        _store_checked(self, self.roughness, "m² rad/m", self.band)
+        _check_and_store(self, self.roughness, "m² rad/m", self.band)
 
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""
@@ -340,7 +340,7 @@ class SncfTrack(BandLimited):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        _store_checked(self, self.roughness, "m³", self.band)
+        _check_and_store(self, self.roughness, "m³", self.band)
 
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""
@@ -419,7 +419,7 @@ class ChineseBallastlessTrack(BandLimited):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        _store_checked(self, 1.0, "1", self.band)
+        _check_and_store(self, 1.0, "1", self.band)
 
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""
@@ -440,15 +440,15 @@ def _lorentzian(corner: float, low: float, high: FloatArray) -> FloatArray:
     return (np.arctan(high / corner) - np.arctan(low / corner)) / corner
 
 
-def _store_checked(spectrum: BandLimited, roughness: float, unit: str, band: tuple[float, float]) -> None:
-    with checking() as check:
+def _check_and_store(spectrum: BandLimited, roughness: float, unit: str, band: tuple[float, float]) -> None:
+    with checking(spectrum) as check:
         check.positive("roughness", roughness, unit)
-        band = checked_band(check, band)
-    object.__setattr__(spectrum, "band", band)
+        checked_band(check, band)
 
 
 def _listed(track_class: int | str, values: Mapping[Any, float], band: tuple[float, float]) -> float:
     """Roughness of a class that a table lists; a wrong band is reported together with a wrong class."""
+    track_class = plain(track_class)
     known = (
         not isinstance(track_class, (bool, float)) and isinstance(track_class, Hashable) and track_class in values
     )

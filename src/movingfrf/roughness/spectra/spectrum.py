@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import Checks
+from movingfrf._basics.checks import Checks, checking
 
 # Measured roads lie between 1 and 4; powers far beyond overflow.
 LARGEST_WAVINESS = 10.0
@@ -57,9 +57,15 @@ class BandLimited(ABC):
         -------
         ndarray
             G_d [m³].
+
+        Raises
+        ------
+        ValueError
+            If a frequency is not finite.
         """
-        n = np.clip(spatial_frequency, *self.band)
-        return np.where(n == spatial_frequency, self._formula(n), 0.0)
+        asked = _checked_frequency(spatial_frequency)
+        n = np.clip(asked, *self.band)
+        return np.where(n == asked, self._formula(n), 0.0)
 
     def variance_below(self, spatial_frequency: FloatArray) -> FloatArray:
         """Variance of the elevation from the lower end of the band up to a spatial frequency.
@@ -73,8 +79,13 @@ class BandLimited(ABC):
         -------
         ndarray
             ∫ G_d dn [m²].
+
+        Raises
+        ------
+        ValueError
+            If a frequency is not finite.
         """
-        return self._integral(self.band[0], np.clip(spatial_frequency, *self.band))
+        return self._integral(self.band[0], np.clip(_checked_frequency(spatial_frequency), *self.band))
 
 
 def power_integral(
@@ -93,6 +104,12 @@ def power_integral(
     return np.where(
         logarithm, scale * np.log(np.divide(high, low)), scale * (np.power(high, safe) - np.power(low, safe)) / safe
     )
+
+
+def _checked_frequency(spatial_frequency: FloatArray) -> FloatArray:
+    with checking() as check:
+        n = check.array("spatial_frequency", spatial_frequency, "cycle/m", None)
+    return n
 
 
 def check_waviness(check: Checks, waviness: float) -> None:

@@ -46,7 +46,7 @@ class TabulatedSpectrum(BandLimited):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             n = check.array("spatial_frequency", self.spatial_frequency, "cycle/m", (None,))
             density = check.array("spectral_density", self.spectral_density, "m³", (None,))
             if not check.faults:
@@ -58,8 +58,6 @@ class TabulatedSpectrum(BandLimited):
                     )
                 if (density <= 0).any():
                     check.refuse("spectral_density", f"must be positive throughout, got {density.min():g} m³")
-        object.__setattr__(self, "spatial_frequency", n)
-        object.__setattr__(self, "spectral_density", density)
 
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""
@@ -120,7 +118,7 @@ class ThirdOctaveSpectrum(BandLimited):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             centres = check.array("wavelength", self.wavelength, "m", (None,))
             levels = check.array("level", self.level, "dB", (None,))
             if not check.faults:
@@ -135,8 +133,6 @@ class ThirdOctaveSpectrum(BandLimited):
                     check.refuse("level", f"must have {centres.size} values, one per wavelength, got {levels.size}")
                 if (np.abs(levels) > 200).any():
                     check.refuse("level", "must be of a credible magnitude, within ±200 dB")
-        object.__setattr__(self, "wavelength", centres)
-        object.__setattr__(self, "level", levels)
 
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""

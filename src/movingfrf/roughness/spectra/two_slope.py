@@ -81,15 +81,14 @@ class TwoSlopeRoad(BandLimited):
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        with checking() as check:
+        with checking(self) as check:
             check.positive("roughness", self.roughness, "m³")
             waviness = check.pair("waviness", self.waviness, "1", signed=True)
             if not check.faults:
                 for exponent in waviness:
                     check_waviness(check, exponent)
-            band = checked_band(check, self.band)
-        object.__setattr__(self, "waviness", waviness)
-        object.__setattr__(self, "band", band)
+                check.keep("waviness", waviness)
+            checked_band(check, self.band)
 
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""

@@ -53,13 +53,13 @@ def like(profile: Profile, columns: FloatArray) -> FloatArray:
     return columns[:, 0] if profile.same_across else columns
 
 
-def longer(length: float, own: float, step: float, paths: int) -> int:
-    """Tell how many stations a longer road has."""
+def longer(length: float, own: float, step: float, paths: int) -> tuple[float, int]:
+    """Tell the length [m] of a longer road, checked, and how many stations it has."""
     with checking() as check:
-        if check.positive("length", length, "m") < own * (1 - SLACK):
+        if (length := check.positive("length", length, "m")) < own * (1 - SLACK):
             check.refuse("length", f"must be at least that of the profile, {own:g} m, got {length:g} m")
     require_room(length, step, paths)
-    return int(np.ceil(length / step - SLACK * length / step)) + 1
+    return length, int(np.ceil(length / step - SLACK * length / step)) + 1
 
 
 def require_room(length: float, step: float, paths: int) -> None:
@@ -91,7 +91,7 @@ def filtered(
 def without_waves(profile: Profile, which: Literal["longer", "shorter"], wavelength: float) -> Profile:
     """Take waves longer or shorter than a length [m] out of a profile by the gentle filter, and say so."""
     with checking() as check:
-        check.positive("wavelength", wavelength, "m")
+        wavelength = check.positive("wavelength", wavelength, "m")
     step = profile.require_even("a filter")
     length = profile.stations[-1] - profile.stations[0]
     with checking() as check:

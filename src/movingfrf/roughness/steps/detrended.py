@@ -37,7 +37,7 @@ def detrended(profile: Profile, *, degree: int = 1) -> Profile:
     """
     most = 5
     with checking() as check:
-        if check.whole("degree", degree) > most:
+        if (degree := check.whole("degree", degree)) > most:
             check.refuse("degree", f"must be at most {most}, got {degree}")
     stations = profile.stations
     # Legendre polynomials over −1 to 1: powers of a station of 500 km would lose every digit.

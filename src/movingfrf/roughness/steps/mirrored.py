@@ -37,7 +37,7 @@ def mirrored(profile: Profile, *, length: float) -> Profile:
     """
     step = profile.require_even("mirroring")
     own = profile.stations[-1] - profile.stations[0]
-    count = longer(length, own, step, profile.paths)
+    length, count = longer(length, own, step, profile.paths)
     last = len(profile.stations) - 1
     place = last - np.abs(np.arange(count) % (2 * last) - last)
     done = f"mirrored forth and back {length / own:.4g} times to {length:g} m"

@@ -46,9 +46,9 @@ def repaired(profile: Profile, *, spike: float, window: float = 1.0, longest: fl
     from scipy.ndimage import median_filter
 
     with checking() as check:
-        check.positive("spike", spike, "m")
-        check.positive("window", window, "m")
-        check.positive("longest", longest, "m")
+        spike = check.positive("spike", spike, "m")
+        window = check.positive("window", window, "m")
+        longest = check.positive("longest", longest, "m")
     step = profile.require_even("looking for spikes")
     size = 2 * round(window / step / 2) + 1
     with checking() as check:

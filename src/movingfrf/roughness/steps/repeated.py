@@ -42,9 +42,9 @@ def repeated(profile: Profile, *, length: float, overlap: float = 0.0) -> Profil
     """
     step = profile.require_even("repetition")
     own = profile.stations[-1] - profile.stations[0]
-    count = longer(length, own, step, profile.paths)
+    length, count = longer(length, own, step, profile.paths)
     with checking() as check:
-        if check.not_negative("overlap", overlap, "m") > own / 2:
+        if (overlap := check.not_negative("overlap", overlap, "m")) > own / 2:
             check.refuse("overlap", f"must be at most half of the profile, {own / 2:g} m, got {overlap:g} m")
     elevation = profile.columns
     shared = round(overlap / step)

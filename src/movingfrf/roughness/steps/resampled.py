@@ -39,7 +39,7 @@ def resampled(profile: Profile, *, step: float) -> Profile:
     [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0]
     """
     with checking() as check:
-        check.positive("step", step, "m")
+        step = check.positive("step", step, "m")
     stations = profile.stations
     length = stations[-1] - stations[0]
     count = int((length / step) * (1 + SLACK)) + 1

@@ -41,13 +41,12 @@ def selected(profile: Profile, *, paths: Sequence[int]) -> Profile:
         if np.ndim(paths) != 1 or not len(paths):
             check.refuse("paths", f"must be a list of at least one number of a path, got {shown(paths)}")
         else:
-            for path in paths:
-                if check.whole("paths", path) >= profile.paths:
-                    check.refuse("paths", f"must be below {profile.paths}, the number of paths, got {path}")
-    across = None if profile.across is None else tuple(profile.across[path] for path in paths)
-    return changed(
-        profile, f"took the paths {list(paths)}", elevation=profile.columns[:, list(paths)], across=across
-    )
+            numbers = [check.whole("paths", path) for path in paths]
+            for number in numbers:
+                if number >= profile.paths:
+                    check.refuse("paths", f"must be below {profile.paths}, the number of paths, got {number}")
+    across = None if profile.across is None else tuple(profile.across[number] for number in numbers)
+    return changed(profile, f"took the paths {numbers}", elevation=profile.columns[:, numbers], across=across)
 
 
 STEP = Step(selected, {"paths": "paths"})
