@@ -30,7 +30,10 @@ duration = 2.0
 """
 # What the journey needs, from the rear axle's start to the front axle's end.
 START, LENGTH = -1.47, 22.87
-PLACE = {"length": LENGTH, "start": START}
+# The road goes on for 5 m and a quarter of a second.
+END = START + LENGTH + 5.0 + 0.25 * 10.0
+PLACE = {"length": END - START, "start": START}
+REALISED = {"length": LENGTH, "start": START, "covering": (START, END)}
 
 
 def road(text):
@@ -101,7 +104,7 @@ def test_spectra(kind):
     keys, spectrum = SPECTRUM_KINDS[kind]
     step = 0.4 / spectrum.band[1]
     made = road(f'kind = "{kind}"\n{keys}\nseed = 3\nstep = {step}')
-    assert_same(made.profile, mf.realise(spectrum, step=step, seed=3, **PLACE))
+    assert_same(made.profile, mf.realise(spectrum, step=step, seed=3, **REALISED))
     assert repr(made.spectrum) == repr(spectrum)
     assert made.coherence == 1.0
     assert made.description == f"{spectrum}, seed 3"
@@ -119,7 +122,7 @@ def test_shapes(kind):
 def test_paths_of_one_surface():
     made = road('kind = "iso_road"\nroad_class = "C"\nwaviness = 2.2\nacross = [0.7, -0.75]\nseed = 5')
     spectrum = mf.IsoRoad.of_class("C", waviness=2.2)
-    assert_same(made.profile, mf.realise(spectrum, seed=5, across=[0.7, -0.75], **PLACE))
+    assert_same(made.profile, mf.realise(spectrum, seed=5, across=[0.7, -0.75], **REALISED))
     assert made.profile.across == (0.7, -0.75)
     assert made.coherence == mf.IsotropicCoherence(waviness=2.2)
     given = road(
@@ -128,7 +131,7 @@ def test_paths_of_one_surface():
     )
     assert given.coherence == mf.ExponentialCoherence(decay=3.0)
     spectrum = mf.GermanTrack.of_class("high")
-    again = mf.realise(spectrum, step=0.2, across=[0.75, -0.75], coherence=given.coherence, **PLACE)
+    again = mf.realise(spectrum, step=0.2, across=[0.75, -0.75], coherence=given.coherence, **REALISED)
     assert_same(given.profile, again)
 
 
@@ -145,7 +148,9 @@ def test_laplace_roads():
     )
     spectrum = mf.IsoRoad.of_class("D")
     across = [0.7, -0.75]
-    assert_same(made.profile, mf.realise_laplace(spectrum, kurtosis=6, segment=5, seed=2, across=across, **PLACE))
+    assert_same(
+        made.profile, mf.realise_laplace(spectrum, kurtosis=6, segment=5, seed=2, across=across, **REALISED)
+    )
     assert (made.spectrum, made.coherence) == (None, None)  # not Gaussian
 
 
@@ -258,14 +263,14 @@ def test_what_is_left_to_the_class_has_no_default_of_its_own():
 def test_keys_are_the_keywords_of_python():
     """All but the length and the start, which follow from the journey."""
     for kind in ROADS:
-        assert not {"length", "start", "interval", "given"} & {key.name for key in kind.keys}, kind.name
+        assert not {"length", "start", "covering", "way", "given"} & {key.name for key in kind.keys}, kind.name
 
 
 @pytest.mark.parametrize("kind", ["german_track", "iso_road"])
 def test_what_a_road_was_made_from_is_told_and_not_fitted(kind):
     from movingfrf.scenarios.description import described
 
-    scenario = parse_scenario(f'{CAR}[roughness]\nkind = "{kind}"\n{SPECTRUM_KINDS[kind][0]}')
+    scenario = parse_scenario(f'{CAR}[roughness]\nkind = "{kind}"\n{SPECTRUM_KINDS[kind][0]}\nseed = [1, 2]')
     lines = dict(dict(described(scenario).sections)["Roughness"])
     assert lines["source"] == scenario.case.road.description
     assert lines["fitted spectrum"] == "none: it was made from the spectrum above"

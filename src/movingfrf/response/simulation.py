@@ -97,8 +97,9 @@ def simulate(
     Warns
     -----
     ValidityWarning
-        If contact would be lost, the speed is near or above critical, the response has not decayed, or there
-        is content beyond the truncation or the Nyquist frequency.
+        If contact would be lost, the speed is near or above critical, the response has not decayed, there is
+        content beyond the truncation or the Nyquist frequency, or contacts on several paths meet a profile that is
+        known along one.
 
     Examples
     --------
@@ -174,6 +175,7 @@ def driven(
     found = [
         *find.contact_lost(turned(total), journey.time_step),
         *surveyed.findings,
+        *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
         *find.not_decayed("vehicle's motion", motion.wrapped, motion.values),
         *find.beyond_nyquist(roughness, journey.time_step),
     ]
