@@ -119,6 +119,38 @@ def test_shapes(kind):
     assert made.spectrum is None
 
 
+@pytest.mark.parametrize(
+    "kind", ['kind = "iso_road"\nroad_class = "B"', 'kind = "bump"\nheight = 0.01\nwidth = 1.0\nat = 5.0']
+)
+def test_a_road_reaches_as_far_as_what_touches_it(kind):
+    """Half of a footprint on either side, beyond the end 5 m and a quarter of a second; it is the same road."""
+    plain, touching = (
+        parse_scenario(CAR.replace("[run]", f"{more}[run]") + "[roughness]\n" + kind).case.road.profile
+        for more in ("", "footprint = 0.3\n")
+    )
+    assert plain.stations[0] == pytest.approx(START)
+    for road, reach in ((plain, 0.0), (touching, 0.15)):
+        step = float(np.diff(road.stations).max())
+        assert START - reach - step < road.stations[0] <= START - reach + 1e-9
+        assert END + reach - 1e-9 <= road.stations[-1] < END + reach + 1.01 * step
+    x = np.linspace(START, END, 500)
+    np.testing.assert_allclose(touching.along(0)(x), plain.along(0)(x), rtol=0, atol=2e-5 * np.ptp(plain.elevation))
+
+
+def test_a_road_does_not_depend_on_the_time_step():
+    """With 7 ms a journey ends 3 ms later than with 1 ms: on the same road."""
+    for kind in ('road_class = "B"', 'road_class = "C"\nseed = [1, 2]'):
+        text = f'[roughness]\nkind = "iso_road"\n{kind}'
+        fine, coarse = (
+            parse_scenario(CAR.replace("duration = 2.0", f"duration = 2.2\ntime_step = {step}") + text).case
+            for step in ("0.001", "0.007")
+        )
+        assert fine.journey.distance != coarse.journey.distance
+        count = min(len(case.road.profile.stations) for case in (fine, coarse))
+        first, second = (case.road.profile.columns[:count] for case in (fine, coarse))
+        np.testing.assert_allclose(first, second, rtol=0, atol=1e-10 * first.std())
+
+
 def test_paths_of_one_surface():
     made = road('kind = "iso_road"\nroad_class = "C"\nwaviness = 2.2\nacross = [0.7, -0.75]\nseed = 5')
     spectrum = mf.IsoRoad.of_class("C", waviness=2.2)

@@ -143,8 +143,11 @@ def test_a_wheel_bridges_a_narrow_hole():
     assert seen.steps == ("rolled over by a wheel of 0.46 m radius",)
 
 
-@pytest.mark.parametrize("road_class", "ABCDEFGH")
-@pytest.mark.parametrize("step", [0.025, 0.02, 0.0125, 0.005])
+ROLLED = [(road_class, step) for road_class in "ABCDEFGH" for step in (0.02, 0.0125, 0.005)]
+ROLLED += [(road_class, step) for road_class in "ABCD" for step in (0.05, 0.03)]
+
+
+@pytest.mark.parametrize(("road_class", "step"), ROLLED)
 def test_a_wheel_follows_rough_roads_as_well_as_it_says(road_class, step):
     """Within step²/(8R) of the highest that two hundred places to a step of the spline lift it to; never above."""
     road = mf.realise(mf.IsoRoad.of_class(road_class), length=12.0, step=step, seed=1)
@@ -154,11 +157,10 @@ def test_a_wheel_follows_rough_roads_as_well_as_it_says(road_class, step):
         seen = mf.rolled(road, radius=radius)
         under = np.arange(-reach, reach, step / parts)
         places = road.stations[(road.stations > radius) & (road.stations < 12.0 - radius)][:: round(0.3 / step)]
-        highest = [np.max(spline(x + under) + np.sqrt(radius**2 - under**2) - radius) for x in places] - seen.along(
-            0
-        )(places)
-        assert highest.max() < step**2 / (8 * radius)
-        assert highest.min() > -0.01 * step**2 / (8 * radius) - 1e-5 * np.ptp(road.elevation)
+        highest = [np.max(spline(x + under) + np.sqrt(radius**2 - under**2) - radius) for x in places]
+        missed = highest - seen.along(0)(places)
+        assert missed.max() < step**2 / (8 * radius)
+        assert missed.min() > -1e-4 * np.ptp(road.elevation)
 
 
 def test_each_path_is_rolled_by_itself():

@@ -77,8 +77,8 @@ def one_path(known: bool, paths: Sequence[int], across: FloatArray) -> list[Find
         Finding(
             "one_path",
             f"the profile is known along one path, but contacts travel on {abreast} side by side: all of them meet "
-            "the same elevation, and nothing makes the vehicle roll. Elevations with a column for each path that "
-            "a contact follows do; equal columns say that it is meant",
+            "the same elevation, and a vehicle that is alike on both sides does not roll. Elevations with a column "
+            "for each path that a contact follows make it; equal columns say that it is meant",
         )
     ]
 

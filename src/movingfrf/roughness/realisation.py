@@ -21,7 +21,8 @@ class Harmonics(NamedTuple):
 
     halves: int  # halves of the shortest wave in a period
     period: float  # [m]
-    numbers: IntArray  # waves in a period, those within the band, shape (line,)
+    first: int  # waves in a period, of the longest within the band
+    last: int  # of the shortest
 
     @classmethod
     def of(cls, band: tuple[float, float], length: float) -> Harmonics:
@@ -35,7 +36,12 @@ class Harmonics(NamedTuple):
         first = int(np.ceil(band[0] * period * (1 - SLACK)))
         # A band between two lines has one of its own all the same.
         last = max(int(band[1] * period * (1 + SLACK)), first)
-        return cls(halves, period, np.arange(first, last + 1))
+        return cls(halves, period, first, last)
+
+    @property
+    def numbers(self) -> IntArray:
+        """Waves in a period of each, shape (line,)."""
+        return np.arange(self.first, self.last + 1)
 
     def variances(self, spectrum: Spectrum) -> FloatArray:
         """Variance of each [m²], together that of the band."""
@@ -210,7 +216,8 @@ def realise_laplace(
             )
 
     def draw(rng: np.random.Generator, paths: int, harmonics: Harmonics) -> ComplexArray:
-        spread, count = kurtosis / 3 - 1, harmonics.halves
+        spread = kurtosis / 3 - 1
+        count = harmonics.halves
         place = np.floor(np.arange(count) * (harmonics.period / count / segment) * (1 + 1e-12)).astype(int)
         deviation = np.sqrt(rng.gamma(1 / spread, spread, place[-1] + 1))[place]
         noise = rng.standard_normal((paths, count)) * deviation
@@ -288,13 +295,14 @@ def _realised(ask: _Asked, draw: Draw, source: str) -> Profile:
     spectrum, start, step, across, coherence = ask.spectrum, ask.start, ask.step, ask.across, ask.coherence
     # Stations at whole steps from the start, those that just cover the interval.
     first, last = (np.array(ask.covering) - start) / step
-    stations = np.arange(int(np.floor(first + SLACK)), int(np.ceil(last - SLACK)) + 1)
+    first, last = np.floor(first + SLACK), np.ceil(last - SLACK)
     harmonics = Harmonics.of(spectrum.band, ask.length)
     paths = 1 if across is None else across.size
     # Bytes that a realisation takes at its peak.
-    several, lines = max(paths, len(ask.seeds)), harmonics.numbers.size
-    needed = 96 * (stations.size + lines) + 16 * several * (stations.size + 4 * lines) + 16 * paths**2 * lines
-    require_memory(needed, f"a profile of {step * stations.size:g} m in steps of {step:g} m")
+    several, count, lines = max(paths, len(ask.seeds)), last - first + 1, harmonics.last - harmonics.first + 1
+    needed = 96 * (count + lines) + 16 * several * (count + 4 * lines) + 16 * paths**2 * lines
+    require_memory(needed, f"a profile of {step * count:g} m in steps of {step:g} m")
+    stations = np.arange(int(first), int(last) + 1)
     # A real harmonic of variance σ² has the amplitude √2 σ.
     amplitudes = np.sqrt(2 * harmonics.variances(spectrum))
     elevations = []
