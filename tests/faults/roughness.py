@@ -21,8 +21,8 @@ FAULTS = [
     Fault(
         "lines beside the band",
         "roughness/realisation.py",
-        "[spectrum.band[0], *edges, spectrum.band[1]]",
-        "[0.9 * spectrum.band[0], *edges, 2 * spectrum.band[1]]",
+        "first = int(np.ceil(band[0]",
+        "first = int(np.floor(band[0]",
     ),
     Fault(
         "chirp of another turn",
@@ -50,6 +50,12 @@ FAULTS = [
     ),
     Fault(
         "one path for what is measured", "roughness/profile.py", "and not self.full_width", "and self.full_width"
+    ),
+    Fault(
+        "one path unsaid by the coupled method",
+        "stepping/coupled.py",
+        "*find.one_path(profile.one_path, vehicle.paths, vehicle.across),",
+        "",
     ),
     Fault("one path for one wheel", "results/findings.py", "if not known or abreast == 1:", "if not known:"),
     Fault("arithmetic class centres", "roughness/spectra/iso.py", "16e-6 * 4.0**n", "20e-6 * 4.0**n"),
@@ -121,6 +127,12 @@ FAULTS = [
         "roughness/spectra/coherence.py",
         "order = self.waviness / 2",
         "order = self.waviness / 2.5",
+    ),
+    Fault(
+        "variance of the line below",
+        "roughness/realisation.py",
+        "(self.numbers[:-1] + 0.5)",
+        "(self.numbers[:-1] - 0.0)",
     ),
     Fault(
         "paths without an own part",
