@@ -19,7 +19,7 @@ from movingfrf.roughness.spectra.spectrum import Spectrum
 class Harmonics(NamedTuple):
     """The harmonics of which a road consists: they follow from its length and band alone, not from stations."""
 
-    halves: int  # halves of the shortest wave in a period
+    halves: int  # halves of the shortest wave in a period, an even number
     period: float  # [m]
     first: int  # waves in a period, of the longest within the band
     last: int  # of the shortest
@@ -30,13 +30,11 @@ class Harmonics(NamedTuple):
         half = 0.5 / band[1]
         least = max(int(np.ceil(length / half * (1 - SLACK))) + 1, int(np.ceil(2 / (band[0] * half))))
         # Rounded up to six binary digits: a fast length for transforms, the same where lengths differ by little.
-        unit = 2 ** max(least.bit_length() - 6, 0)
+        unit = 2 ** max(least.bit_length() - 6, 1)
         halves = -(-least // unit) * unit
         period = halves * half
-        first = int(np.ceil(band[0] * period * (1 - SLACK)))
-        # A band between two lines has one of its own all the same.
-        last = max(int(band[1] * period * (1 + SLACK)), first)
-        return cls(halves, period, first, last)
+        # The shortest wave of the band is one of them, so that no band is too narrow for a line.
+        return cls(halves, period, int(np.ceil(band[0] * period * (1 - SLACK))), halves // 2)
 
     @property
     def numbers(self) -> IntArray:
