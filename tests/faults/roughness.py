@@ -21,8 +21,8 @@ FAULTS = [
     Fault(
         "lines beside the band",
         "roughness/realisation.py",
-        "first = int(np.ceil(band[0]",
-        "first = int(np.floor(band[0]",
+        "int(np.ceil(band[0] * period",
+        "int(np.floor(band[0] * period",
     ),
     Fault(
         "chirp of another turn",
