@@ -34,7 +34,6 @@ def one_road(speed: float, seed: int):
     surface = mf.realise(
         spectrum,
         length=60.0 * speed + 8.0,
-        step=0.02,
         start=-4.0,
         seed=seed,
         across=(0.7, -0.75),

@@ -9,10 +9,12 @@ from __future__ import annotations
 import csv
 import json
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.fft
 import xarray as xr
 
 import movingfrf as mf
@@ -31,9 +33,27 @@ def relative(found, wanted) -> float:
     return float(np.linalg.norm(found - wanted) / (np.linalg.norm(wanted) or 1.0))
 
 
+def on_its_road(case):
+    """Let a drive travel along the road that 0.1 realised: its harmonics belonged to the step and a fast length."""
+    if not hasattr(case, "road"):
+        return case
+    first, last = case.journey.interval(case.vehicle)
+    spectrum, step = case.road.spectrum, 0.05
+    count = int(np.ceil((last - first) / step - 1e-9)) + 1
+    period = scipy.fft.next_fast_len(max(count, int(np.ceil(2 / (spectrum.band[0] * step)))), real=True)
+    edges = (np.arange(period // 2 + 2) - 0.5) / (period * step)
+    variance = np.diff(spectrum.variance_below(np.maximum(edges, 0.0)))
+    phases = np.random.default_rng(0).uniform(0.0, 2 * np.pi, period // 2 + 1)
+    elevation = np.fft.irfft(np.sqrt(variance / 2) * np.exp(1j * phases) * period, period)[:count]
+    profile = mf.Profile(first + step * np.arange(count), elevation, source=case.road.profile.source)
+    return replace(case, road=case.road._replace(profile=profile))
+
+
 @pytest.mark.parametrize("name", ["truck", "loads"])
 def test_a_scenario_says_what_it_said(name):
+    """All of it but its road, which 0.1 realised otherwise."""
     scenario = mf.read_scenario(WRITTEN / f"{name}.toml")
+    scenario = replace(scenario, case=on_its_road(scenario.case))
     earlier = load(WRITTEN / f"{name}.nc")
     assert scenario.text == earlier.attrs["scenario"]
     with warnings.catch_warnings():

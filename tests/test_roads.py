@@ -30,7 +30,10 @@ duration = 2.0
 """
 # What the journey needs, from the rear axle's start to the front axle's end.
 START, LENGTH = -1.47, 22.87
-PLACE = {"length": LENGTH, "start": START}
+# The road goes on for 5 m and a quarter of a second.
+END = START + LENGTH + 5.0 + 0.25 * 10.0
+PLACE = {"length": END - START, "start": START}
+REALISED = {"length": LENGTH, "start": START, "covering": (START, END)}
 
 
 def road(text):
@@ -101,7 +104,7 @@ def test_spectra(kind):
     keys, spectrum = SPECTRUM_KINDS[kind]
     step = 0.4 / spectrum.band[1]
     made = road(f'kind = "{kind}"\n{keys}\nseed = 3\nstep = {step}')
-    assert_same(made.profile, mf.realise(spectrum, step=step, seed=3, **PLACE))
+    assert_same(made.profile, mf.realise(spectrum, step=step, seed=3, **REALISED))
     assert repr(made.spectrum) == repr(spectrum)
     assert made.coherence == 1.0
     assert made.description == f"{spectrum}, seed 3"
@@ -116,10 +119,42 @@ def test_shapes(kind):
     assert made.spectrum is None
 
 
+@pytest.mark.parametrize(
+    "kind", ['kind = "iso_road"\nroad_class = "B"', 'kind = "bump"\nheight = 0.01\nwidth = 1.0\nat = 5.0']
+)
+def test_a_road_reaches_as_far_as_what_touches_it(kind):
+    """Half of a footprint on either side, beyond the end 5 m and a quarter of a second; it is the same road."""
+    plain, touching = (
+        parse_scenario(CAR.replace("[run]", f"{more}[run]") + "[roughness]\n" + kind).case.road.profile
+        for more in ("", "footprint = 0.3\n")
+    )
+    assert plain.stations[0] == pytest.approx(START)
+    for road, reach in ((plain, 0.0), (touching, 0.15)):
+        step = float(np.diff(road.stations).max())
+        assert START - reach - step < road.stations[0] <= START - reach + 1e-9
+        assert END + reach - 1e-9 <= road.stations[-1] < END + reach + 1.01 * step
+    x = np.linspace(START, END, 500)
+    np.testing.assert_allclose(touching.along(0)(x), plain.along(0)(x), rtol=0, atol=2e-5 * np.ptp(plain.elevation))
+
+
+def test_a_road_does_not_depend_on_the_time_step():
+    """With 5 ms a journey ends 2 ms later than with 1 ms: on the same road, which just fits into its period."""
+    for kind in ('road_class = "B"', 'road_class = "C"\nseed = [1, 2]'):
+        text = f'[roughness]\nkind = "iso_road"\nband = [0.5, 10.0]\n{kind}'
+        fine, coarse = (
+            parse_scenario(CAR.replace("duration = 2.0", f"duration = 2.108\ntime_step = {step}") + text).case
+            for step in ("0.001", "0.005")
+        )
+        assert fine.journey.distance < coarse.journey.distance
+        count = min(len(case.road.profile.stations) for case in (fine, coarse))
+        first, second = (case.road.profile.columns[:count] for case in (fine, coarse))
+        np.testing.assert_allclose(first, second, rtol=0, atol=1e-10 * first.std())
+
+
 def test_paths_of_one_surface():
     made = road('kind = "iso_road"\nroad_class = "C"\nwaviness = 2.2\nacross = [0.7, -0.75]\nseed = 5')
     spectrum = mf.IsoRoad.of_class("C", waviness=2.2)
-    assert_same(made.profile, mf.realise(spectrum, seed=5, across=[0.7, -0.75], **PLACE))
+    assert_same(made.profile, mf.realise(spectrum, seed=5, across=[0.7, -0.75], **REALISED))
     assert made.profile.across == (0.7, -0.75)
     assert made.coherence == mf.IsotropicCoherence(waviness=2.2)
     given = road(
@@ -128,7 +163,7 @@ def test_paths_of_one_surface():
     )
     assert given.coherence == mf.ExponentialCoherence(decay=3.0)
     spectrum = mf.GermanTrack.of_class("high")
-    again = mf.realise(spectrum, step=0.2, across=[0.75, -0.75], coherence=given.coherence, **PLACE)
+    again = mf.realise(spectrum, step=0.2, across=[0.75, -0.75], coherence=given.coherence, **REALISED)
     assert_same(given.profile, again)
 
 
@@ -145,7 +180,9 @@ def test_laplace_roads():
     )
     spectrum = mf.IsoRoad.of_class("D")
     across = [0.7, -0.75]
-    assert_same(made.profile, mf.realise_laplace(spectrum, kurtosis=6, segment=5, seed=2, across=across, **PLACE))
+    assert_same(
+        made.profile, mf.realise_laplace(spectrum, kurtosis=6, segment=5, seed=2, across=across, **REALISED)
+    )
     assert (made.spectrum, made.coherence) == (None, None)  # not Gaussian
 
 
@@ -258,14 +295,14 @@ def test_what_is_left_to_the_class_has_no_default_of_its_own():
 def test_keys_are_the_keywords_of_python():
     """All but the length and the start, which follow from the journey."""
     for kind in ROADS:
-        assert not {"length", "start", "interval", "given"} & {key.name for key in kind.keys}, kind.name
+        assert not {"length", "start", "covering", "way", "given"} & {key.name for key in kind.keys}, kind.name
 
 
 @pytest.mark.parametrize("kind", ["german_track", "iso_road"])
 def test_what_a_road_was_made_from_is_told_and_not_fitted(kind):
     from movingfrf.scenarios.description import described
 
-    scenario = parse_scenario(f'{CAR}[roughness]\nkind = "{kind}"\n{SPECTRUM_KINDS[kind][0]}')
+    scenario = parse_scenario(f'{CAR}[roughness]\nkind = "{kind}"\n{SPECTRUM_KINDS[kind][0]}\nseed = [1, 2]')
     lines = dict(dict(described(scenario).sections)["Roughness"])
     assert lines["source"] == scenario.case.road.description
     assert lines["fitted spectrum"] == "none: it was made from the spectrum above"

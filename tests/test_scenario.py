@@ -198,7 +198,8 @@ def test_a_full_car_and_a_seed_for_each_path():
         alone = parse_scenario(four_wheels(f"[{seed}, {seed}]")).case.road.profile
         assert (alone.elevation[:, 0] == alone.elevation[:, 1]).all()
         assert (profile.elevation[:, path] == alone.elevation[:, 0]).all()
-    assert abs(np.corrcoef(profile.elevation.T)[0, 1]) < 0.3
+    # Long waves are few; by their slopes they are strangers.
+    assert abs(np.corrcoef(np.diff(profile.elevation, axis=0).T)[0, 1]) < 0.2
     # One seed in a list is one path, the same as without a list.
     one, listed = (parse_scenario(edited(seed=seed)).case.road.profile for seed in ("1", "[1]"))
     assert listed.paths == 1
@@ -209,7 +210,11 @@ def test_a_full_car_and_a_seed_for_each_path():
     ).drop_attrs()
     assert result.drop_attrs().identical(direct)
     assert np.abs(result.motion.sel(dof="roll")).max() > 1e-5
-    same, single = (parse_scenario(four_wheels(seeds)).run() for seeds in ("[1, 1]", "1"))
+    same = parse_scenario(four_wheels("[1, 1]")).run()
+    with pytest.warns(
+        mf.ValidityWarning, match="the profile is known along one path, but contacts travel on 2 side"
+    ):
+        single = parse_scenario(four_wheels("1")).run()
     assert np.abs(same.motion.sel(dof="roll")).max() < 0.1 * np.abs(result.motion.sel(dof="roll")).max()
     # A single seed makes one road for all of the width.
     assert (same.contact_force.values == single.contact_force.values).all()
@@ -284,8 +289,8 @@ def test_all_faults_at_once():
         ({"road_class": None}, "roughness.road_class", "needed"),
         ({"waviness": '"two"'}, "roughness.waviness", "must be a finite number"),
         ({"waviness": "1e9"}, "roughness.waviness", "must lie within ±10"),
-        ({"step": 0.2}, "roughness.step", "half of the shortest wave"),
-        ({"step": 1e-9}, "roughness:", "GiB of memory"),
+        ({"seed": "0\nstep = 0.2"}, "roughness.step", "half of the shortest wave"),
+        ({"seed": "0\nstep = 1e-9"}, "roughness:", "GiB of memory"),
         ({"seed": -1}, "roughness.seed", "whole number"),
         ({"kind": "3"}, "guideway.kind", "must be one of track, rigid_guideway, "),
     ],

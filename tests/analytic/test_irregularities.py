@@ -143,6 +143,26 @@ def test_a_wheel_bridges_a_narrow_hole():
     assert seen.steps == ("rolled over by a wheel of 0.46 m radius",)
 
 
+ROLLED = [(road_class, step) for road_class in "ABCDEFGH" for step in (0.02, 0.0125, 0.005)]
+ROLLED += [(road_class, step) for road_class in "ABCD" for step in (0.05, 0.03)]
+
+
+@pytest.mark.parametrize(("road_class", "step"), ROLLED)
+def test_a_wheel_follows_rough_roads_as_well_as_it_says(road_class, step):
+    """Within step²/(8R) of the highest that two hundred places to a step of the spline lift it to; never above."""
+    road = mf.realise(mf.IsoRoad.of_class(road_class), length=12.0, step=step, seed=1)
+    spline, parts = road.along(0), 200
+    for radius in (0.3, 0.5):
+        reach = radius - step / parts
+        seen = mf.rolled(road, radius=radius)
+        under = np.arange(-reach, reach, step / parts)
+        places = road.stations[(road.stations > radius) & (road.stations < 12.0 - radius)][:: round(0.3 / step)]
+        highest = [np.max(spline(x + under) + np.sqrt(radius**2 - under**2) - radius) for x in places]
+        missed = highest - seen.along(0)(places)
+        assert missed.max() < step**2 / (8 * radius)
+        assert missed.min() > -1e-4 * np.ptp(road.elevation)
+
+
 def test_each_path_is_rolled_by_itself():
     pair = mf.realise(mf.IsoRoad.of_class("E"), length=20.0, across=[0.7, -0.7])
     seen = np.asarray(mf.rolled(pair, radius=0.3).elevation)

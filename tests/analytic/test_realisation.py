@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
@@ -11,6 +13,7 @@ from scipy.signal import csd, welch
 from scipy.stats import chi2, kstest, laplace
 
 import movingfrf as mf
+from movingfrf.roughness.realisation import Harmonics
 from movingfrf.roughness.spectra.coherence import presumed
 
 SPECTRA = [
@@ -108,14 +111,14 @@ def test_paths_have_in_common_what_they_should(coherence):
     n = np.fft.rfftfreq(samples, step)
     lines = (n > 0.05) & (n < 2.0)
     gamma = coherence.between(n[lines], across[:, None] - across)
+    # A period of 160 halves of the shortest wave: what 39.75 m and an end ask for.
+    place = {"length": 39.75, "step": step, "covering": (0.0, (samples - 1) * step)}
     scale = np.sqrt(
         np.diff(spectrum.variance_below(np.array([n[lines] - n[1] / 2, n[lines] + n[1] / 2])), axis=0)[0]
     )
     cross = np.zeros((lines.sum(), 3, 3), complex)
     for seed in range(seeds):
-        road = mf.realise(
-            spectrum, length=(samples - 1) * step, step=step, seed=seed, across=across, coherence=coherence
-        )
+        road = mf.realise(spectrum, seed=seed, across=across, coherence=coherence, **place)
         assert np.shape(road.elevation) == (samples, 3)
         assert road.across == (0.75, -0.75, 0.0)
         amplitude = np.sqrt(2) * np.fft.rfft(road.elevation, axis=0)[lines] / samples / scale[:, None]
@@ -150,6 +153,77 @@ def test_coherence_by_an_independent_estimator():
         independent = 20 * max(part.sum() / 2, 1)
         scatter = np.sqrt((1 - expected[part] ** 2).mean() / (2 * independent))
         assert found[part].mean() == pytest.approx(expected[part].mean(), abs=5 * scatter + 2e-3)
+
+
+FINE = mf.IsoRoad.of_class("A", band=(0.01, 10.0))
+COARSE = mf.IsoRoad.of_class("C", band=(0.001, 0.0104))
+# Spectrum, steps, and the distance at which stations of all of them lie.
+STEPS = [(FINE, [0.05, 0.02, 0.0125, 0.004, None], 0.1), (COARSE, [1.0, 48.0, 12.0], 48.0)]
+
+
+@pytest.mark.parametrize(("spectrum", "steps", "common"), STEPS, ids=["short waves", "long waves"])
+@pytest.mark.parametrize("kind", ["one path", "surface", "strangers", "Laplace"])
+def test_a_road_belongs_to_seed_length_and_band_and_not_to_the_step(spectrum, steps, common, kind):
+    """By its sum at every station that they share; at the coarsest step there are 2.003 stations to a wave."""
+    make = {
+        "one path": mf.realise,
+        "surface": partial(mf.realise, across=[0.7, -0.7]),
+        "strangers": partial(mf.realise, seed=[4, 2]),
+        "Laplace": partial(mf.realise_laplace, kurtosis=6.0, segment=60.0),
+    }[kind]
+    length = 2000 * common
+    roads = [make(spectrum, length=length, step=step, start=-3.0) for step in steps]
+    shared = [road.columns[:: round(common / road.even_step())][:2001] for road in roads]
+    for found in shared[1:]:
+        np.testing.assert_allclose(found, shared[0], rtol=0, atol=1e-9 * shared[0].std())
+    assert roads[-1].stations[-1] >= length - 3.0
+
+
+def test_harmonics_are_summed_where_the_stations_are():
+    """The sum written out, at both ends and in the middle of 5 km of road, whose lines lie within the band."""
+    spectrum = mf.IsoRoad.of_class("A", band=(0.013, 8.0))
+    harmonics = Harmonics.of(spectrum.band, 5000.0)
+    n = harmonics.numbers / harmonics.period
+    assert harmonics.period > 5000.0
+    assert spectrum.band[0] <= n[0] < n[0] + 1 / harmonics.period
+    assert n[-1] == pytest.approx(spectrum.band[1], rel=1e-12)
+    assert harmonics.variances(spectrum).sum() == pytest.approx(spectrum.variance_below(np.array(9.0)), rel=1e-12)
+    phases = np.random.default_rng(7).uniform(0.0, 2 * np.pi, n.size)
+    road = mf.realise(spectrum, length=5000.0, step=0.03, start=100.0, seed=7)
+    for x in road.stations[[0, 1, 2, 80_000, -2, -1]]:
+        waves = np.cos(2 * np.pi * n * (x - 100.0) + phases)
+        expected = np.sqrt(2 * harmonics.variances(spectrum)) @ waves
+        assert road.along(0)(x) == pytest.approx(expected, abs=1e-10 * np.std(road.elevation))
+
+
+def test_the_default_step_is_an_eighth_of_the_shortest_wave():
+    for spectrum in (FINE, mf.GermanTrack.of_class("low")):
+        assert mf.realise(spectrum, length=40.0).even_step() == pytest.approx(0.125 / spectrum.band[1], rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", [mf.realise, partial(mf.realise_laplace, kurtosis=6.0, segment=1.0)])
+def test_a_road_goes_on_beyond_its_length(kind):
+    """Ahead and behind, at the same whole steps, until it repeats itself."""
+    road = kind(FINE, length=300.0, start=2.0, step=0.02)
+    longer = kind(FINE, length=300.0, start=2.0, step=0.02, covering=(-3.005, 330.001))
+    assert longer.stations[[0, -1]] == pytest.approx([-3.02, 330.02], abs=1e-9)
+    same = longer.columns[251 : 251 + road.stations.size]
+    np.testing.assert_allclose(same, road.columns, rtol=0, atol=1e-10 * road.columns.std())
+    period = Harmonics.of(FINE.band, 300.0).period
+    assert period == pytest.approx(300.8)
+    np.testing.assert_allclose(longer.along(0)(-1.0), longer.along(0)(period - 1.0), rtol=0, atol=1e-10)
+    # A length that differs by a rounding has the same road, one of four metres more another.
+    again, other = (kind(FINE, length=300.0 + more, start=2.0, step=0.02) for more in (0.003, 4.0))
+    np.testing.assert_allclose(again.columns[: road.stations.size], road.columns, rtol=0, atol=1e-12)
+    assert np.abs(other.columns[: road.stations.size] - road.columns).max() > road.columns.std()
+
+
+@pytest.mark.parametrize("length", [10.0, 10.5, 11.0])
+def test_no_band_is_too_narrow(length):
+    narrow = mf.IsoRoad.of_class("A", band=(1.01, 1.02))
+    road = mf.realise(narrow, length=length, step=0.1)
+    assert np.var(road.elevation) == pytest.approx(float(narrow.variance_below(np.array(2.0))), rel=0.1)
+    assert np.var(mf.realise_laplace(narrow, kurtosis=4.0, segment=1.0, length=length).elevation) > 0
 
 
 def test_the_first_path_is_the_road_by_itself():
@@ -231,7 +305,7 @@ WHITE = mf.IsoRoad(roughness=1e-6, waviness=0.0, band=(0.01, 10.0))
 
 def test_noise_of_kurtosis_six_is_laplace_distributed():
     """A normal variate with exponentially distributed variance is Laplace distributed; variance ∫ G_d dn = 1e-5."""
-    road = mf.realise_laplace(WHITE, kurtosis=6.0, segment=0.05, length=10_000.0, seed=1)
+    road = mf.realise_laplace(WHITE, kurtosis=6.0, segment=0.05, length=10_000.0, step=0.05, seed=1)
     elevation = np.asarray(road.elevation)
     assert kstest(elevation, laplace(scale=np.sqrt(0.5 * 1e-6 * 9.99)).cdf).pvalue > 0.01
     assert kstest(elevation, "norm", args=(0, np.sqrt(1e-6 * 9.99))).pvalue < 1e-6
@@ -244,7 +318,7 @@ def test_kurtosis_of_laplace_roads(segment):
     With kurtosis 4 the gamma variances have E V² = 4/3 and a standard deviation of V² of 1.63: the mean over N
     segments scatters by 1.63/√N, here below 4 % even for the longest.
     """
-    spectrum = mf.IsoRoad(roughness=16e-6, waviness=2.0, band=(0.05, 1.8))
+    spectrum = mf.IsoRoad(roughness=16e-6, waviness=2.0, band=(0.05, 2.0))
     step, length = 0.25, 250_000.0
     road = mf.realise_laplace(spectrum, kurtosis=4.0, segment=segment, length=length, step=step, seed=8)
     z = np.asarray(road.elevation)
@@ -271,8 +345,9 @@ def test_laplace_roads_have_the_spectrum_in_expectation():
             spectrum,
             kurtosis=6.0,
             segment=5.0,
-            length=(samples - 1) * step,
+            length=39.75,
             step=step,
+            covering=(0.0, (samples - 1) * step),
             seed=seed,
             across=[0.7, -0.7],
         )
@@ -284,8 +359,8 @@ def test_laplace_roads_have_the_spectrum_in_expectation():
 
 
 def test_laplace_paths_are_rough_in_the_same_places():
-    road = mf.realise_laplace(WHITE, kurtosis=9.0, segment=10.0, length=20_000.0, seed=3, across=[0.0, 50.0],
-                              coherence=mf.ExponentialCoherence(decay=100.0))  # fmt: skip
+    noise = {"kurtosis": 9.0, "segment": 10.0, "coherence": mf.ExponentialCoherence(decay=100.0)}
+    road = mf.realise_laplace(WHITE, length=20_000.0, step=0.05, seed=3, across=[0.0, 50.0], **noise)
     left, right = (np.asarray(road.elevation)[:-1].reshape(-1, 200, 2).std(axis=1)).T
     columns = np.asarray(road.elevation)
     assert abs(np.corrcoef(columns.T)[0, 1]) < 0.05  # nothing in common, wave by wave
@@ -321,6 +396,9 @@ ISO = mf.IsoRoad.of_class("A")
             lambda: mf.realise(ISO, length=9.0, step=0.06),
             r"step must be at most 0\.05 m, half of the shortest wave",
         ),
+        (lambda: mf.realise(ISO, length=9.0, step=0.0), "step must be positive"),
+        (lambda: mf.realise(ISO, length=9.0, covering=(3.0, 3.0)), "covering must be a first and a last distance"),
+        (lambda: mf.realise(ISO, length=9.0, covering=(3.0,)), "covering must have shape"),
         (lambda: mf.realise(16e-6, length=9.0), "spectrum must be a spectrum, IsoRoad or another, got 1.6e-05"),
         (lambda: mf.IsotropicCoherence(waviness=0.0), "waviness must be positive"),
         (lambda: mf.IsotropicCoherence(waviness=11.0), "waviness must be at most 10"),
@@ -330,7 +408,10 @@ ISO = mf.IsoRoad.of_class("A")
             r"kurtosis must be above 3, the kurtosis of a Gaussian road, got 3\.0",
         ),
         (lambda: laplace_road(kurtosis=3.0000000000000004), "kurtosis must be above 3"),
-        (lambda: laplace_road(segment=0.01), r"segment must be at least one step of 0\.05 m, got 0\.01 m"),
+        (
+            lambda: laplace_road(segment=0.01),
+            r"segment must be at least half of the shortest wave of the spectrum, 0\.05 m",
+        ),
         (lambda: laplace_road(seed=[]), "seed must be a whole number"),
     ],
 )

@@ -37,10 +37,8 @@ class Case(NamedTuple):
     def travelled(self, seed: int):
         """One journey over one road."""
         ends = self.vehicle.positions
-        # Eight stations to the shortest wave: the spline between four would take 3 % off it.
         road = mf.realise(
             self.spectrum,
-            step=0.02,
             length=self.speed * DURATION + np.ptp(ends) + 1.0,
             start=ends.min() - 0.5,
             seed=seed,

@@ -8,15 +8,15 @@ import pytest
 from tests.cross.realisations import CASES, compared, densities, expected
 
 # Fewer than a proof needs, for speed: `python -m benchmarks.random_roads` takes 400.
-REALISATIONS = 40
+REALISATIONS = 80
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_mean_of_realisations(name):
     """Variances in octaves within the confidence interval of their mean.
 
-    Of Student's t with 39 degrees of freedom |t| > 4 has a probability of 3e-4, for each of the 120 variances at
-    most, which hang together. Errors of that size: 2 to 20 %, and of a wrong delay or coherence ten times as much.
+    Of Student's t with 79 degrees of freedom |t| > 4 has a probability of 1e-4, for each of the 120 variances at
+    most, which hang together. Errors of that size: 1 to 14 %, and of a wrong delay or coherence ten times as much.
     """
     found = compared(CASES[name], range(REALISATIONS))
     assert np.abs(found.t).max() < 4.0

@@ -33,6 +33,7 @@ SELECTION = [
     "tests/laws/test_random.py",
     "tests/laws/test_random_statistics.py",
     "tests/test_roads.py",
+    "tests/test_one_path.py",
     "tests/test_random_command.py",
     "tests/test_door.py",
 ]

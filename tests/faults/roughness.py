@@ -6,7 +6,58 @@ from tests.faults.fault import Fault
 
 FAULTS = [
     # Road.
-    Fault("two-sided density", "roughness/realisation.py", "np.sqrt(variance / 2)", "np.sqrt(variance)"),
+    Fault(
+        "two-sided density",
+        "roughness/realisation.py",
+        "np.sqrt(2 * harmonics.variances",
+        "np.sqrt(harmonics.variances",
+    ),
+    Fault(
+        "another road at another step",
+        "roughness/realisation.py",
+        "(spectrum.band, ask.length)",
+        "(spectrum.band, 99 * step + ask.length)",
+    ),
+    Fault(
+        "lines beside the band",
+        "roughness/realisation.py",
+        "int(np.ceil(band[0] * period",
+        "int(np.floor(band[0] * period",
+    ),
+    Fault(
+        "chirp of another turn",
+        "roughness/realisation.py",
+        "np.pi * np.remainder(",
+        "np.pi * (1 + 1e-9) * np.remainder(",
+    ),
+    Fault("stations beside whole steps", "roughness/realisation.py", "np.floor(first + SLACK)", "np.ceil(first)"),
+    Fault("four stations to a wave", "roughness/realisation.py", "eighth = 0.125 /", "eighth = 0.25 /"),
+    Fault(
+        "wheel that touches at stations alone", "roughness/combination.py", "sharpest))), 16)", "sharpest))), 1)"
+    ),
+    Fault(
+        "wheel on the waves of a spline",
+        "roughness/combination.py",
+        "[1:]) + 0.5 * least",
+        "[1:]) + 0.5 * bent.max()",
+    ),
+    Fault("no road beyond the journey", "scenarios/roads.py", "+ reach + beyond))", "+ reach))"),
+    Fault(
+        "a road for every rounding of the duration",
+        "scenarios/roads.py",
+        "last = end - journey.distance + journey.speed * journey.duration",
+        "last = end",
+    ),
+    Fault(
+        "one path for what is measured", "roughness/profile.py", "and not self.full_width", "and self.full_width"
+    ),
+    Fault(
+        "one path unsaid by the coupled method",
+        "stepping/coupled.py",
+        "*find.one_path(profile.one_path, vehicle.paths, vehicle.across),",
+        "",
+    ),
+    Fault("one path for one wheel", "results/findings.py", "if not known or abreast == 1:", "if not known:"),
     Fault("arithmetic class centres", "roughness/spectra/iso.py", "16e-6 * 4.0**n", "20e-6 * 4.0**n"),
     Fault("slopes exchanged", "roughness/spectra/two_slope.py", "MEETING, long, short)", "MEETING, short, long)"),
     Fault(
@@ -78,6 +129,12 @@ FAULTS = [
         "order = self.waviness / 2.5",
     ),
     Fault(
+        "variance of the line below",
+        "roughness/realisation.py",
+        "(self.numbers[:-1] + 0.5)",
+        "(self.numbers[:-1] - 0.0)",
+    ),
+    Fault(
         "paths without an own part",
         "roughness/realisation.py",
         "own = rest[:, :1] > smallest_pivot",
@@ -103,7 +160,7 @@ FAULTS = [
     ),
     Fault("what a mask hides", "_basics/checks.py", "uncovered(value) if masks(value) else value", "value"),
     Fault("true is one", "_basics/checks.py", "if kinds & {bool, np.bool_}:", "if False:"),
-    Fault("segments of a step", "roughness/realisation.py", "* (ask.step / segment) *", "*"),
+    Fault("segments of a step", "roughness/realisation.py", "/ count / segment)", "/ count)"),
     Fault(
         "a flat lifts the wheel",
         "roughness/irregularities.py",

@@ -9,8 +9,8 @@ FAULTS = [
     Fault(
         "shape that starts at zero",
         "scenarios/roads.py",
-        "last - first, start=first, **given)",
-        "last - first, **given)",
+        'last - first, "start": first}',
+        'last - first, "start": 0.0}',
     ),
     # What a table of a scenario can be.
     Fault("key that may be left out", "scenarios/kind.py", "=_without_none(", "=("),

@@ -209,6 +209,7 @@ def random(
         from movingfrf.reports.random import drawing_frequencies, paths_in_words, render
         from movingfrf.response.random import random_response
         from movingfrf.results.files import replacing, save, summary_as_json
+        from movingfrf.results.findings import one_path, with_more
         from movingfrf.scenarios.reading import read_scenario
         from movingfrf.scenarios.scenario import Drive
         from movingfrf.scenarios.stepped import require_endless
@@ -238,7 +239,10 @@ def random(
                 exposure=exposure,
                 progress=stages.report,
             )
-            result = response().assign_attrs(scenario=scenario.text)
+            result = response()
+            alike = one_path(road.profile.one_path, drive.vehicle.paths, drive.vehicle.across)
+            findings = with_more(result.attrs["findings"], alike)
+            result = result.assign_attrs(scenario=scenario.text, findings=findings)
             drawn = response(frequency=drawing_frequencies(result))
             found = random_measures(result, slope=slope)
             save(result, temporary / "random.nc")

@@ -104,8 +104,9 @@ def simulate(
     Warns
     -----
     ValidityWarning
-        If contact would be lost, the speed is near or above critical, the response has not decayed, or there
-        is content beyond the truncation or the Nyquist frequency.
+        If contact would be lost, the speed is near or above critical, the response has not decayed, there is
+        content beyond the truncation or the Nyquist frequency, or contacts on several paths meet a profile that is
+        known along one.
 
     Examples
     --------
@@ -207,6 +208,7 @@ def driven(
     found = [
         *find.contact_lost(turned(total), journey.time_step),
         *surveyed.findings,
+        *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
         *find.not_decayed("vehicle's motion", motion.wrapped, motion.values),
         *find.beyond_truncation(cut.frequency, cut.error),
         *find.unresolved(left_out, driven_by.step),

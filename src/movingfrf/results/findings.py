@@ -73,6 +73,21 @@ def near_critical(speed: float, critical_speed: float) -> list[Finding]:
     ]
 
 
+def one_path(known: bool, paths: Sequence[int], across: FloatArray) -> list[Finding]:
+    """Say that contacts on several paths, or at several places across [m], meet a profile known along one path."""
+    abreast = max(len(set(paths)), len(set(across.tolist())))
+    if not known or abreast == 1:
+        return []
+    return [
+        Finding(
+            "one_path",
+            f"the profile is known along one path, but contacts travel on {abreast} side by side: all of them meet "
+            "the same elevation, and a vehicle that is alike on both sides does not roll. Elevations with a column "
+            "for each path that a contact follows make it; equal columns say that it is meant",
+        )
+    ]
+
+
 def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Finding]:
     """Compare what wraps around from the end of the padding (*case, port) with records (*case, port, time)."""
     rows = values.reshape(-1, values.shape[-1])
@@ -169,6 +184,11 @@ def grade_taken(grade: float) -> list[Finding]:
             "elevation and motion are about that line; the load transfer of a vehicle on a slope is not part of it",
         )
     ]
+
+
+def with_more(findings: str, more: Iterable[Finding]) -> str:
+    """Add findings to those of a JSON text."""
+    return json.dumps([*json.loads(findings), *(finding._asdict() for finding in more)])
 
 
 def announced(found: Iterable[Finding]) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.steps.base import changed, like
 
 
 def superposed(*profiles: Profile) -> Profile:
@@ -47,13 +48,20 @@ def superposed(*profiles: Profile) -> Profile:
             check.refuse("profiles", f"must have the same number of paths, got {' and '.join(map(str, counts))}")
     stations = _shared_stations(profiles)
     across = [profile.across for profile in profiles if profile.across is not None]
+    full_width = all(profile.full_width for profile in profiles)
     if not counts:
         elevation = sum(profile.along(0)(stations) for profile in profiles)
     else:
         elevation = np.stack(
             [sum(profile.along(path)(stations) for profile in profiles) for path in range(counts[0])], axis=1
         )
-    return Profile(stations, elevation, source=_sources(profiles), across=across[0] if across else None)
+    return Profile(
+        stations,
+        elevation,
+        source=_sources(profiles),
+        across=across[0] if across else None,
+        full_width=full_width,
+    )
 
 
 def side_by_side(*profiles: Profile) -> Profile:
@@ -94,8 +102,12 @@ def rolled(profile: Profile, *, radius: float) -> Profile:
 
     A round wheel bridges what is narrower than itself: it rises ahead of a step, and never reaches the bottom of a
     narrow hole. Each point of the path is the highest that any point of the profile under the wheel lifts it to,
-    max over |s| < R of z(x + s) + √(R² − s²) − R. The wheel touches at stations only, which lowers it by up to
-    step²/(8R).
+    max over |s| < R of z(x + s) + √(R² − s²) − R. The wheel touches at stations and at so many places between them
+    that what it misses lowers it by at most step²/(8R).
+
+    Between stations the profile is its cubic spline, but higher than both of them only where it is bent down at
+    both: beside an edge a spline makes waves that are none of the road's. A road of ISO 8608's class E or worse
+    has such edges too if its shortest wave has fewer than five stations: the wheel may be ten times as much lower.
 
     Parameters
     ----------
@@ -125,23 +137,38 @@ def rolled(profile: Profile, *, radius: float) -> Profile:
     with checking() as check:
         radius = check.positive("radius", radius, "m")
     step = profile.require_even("rolling a wheel over it")
-    elevation = profile.columns
+    highest = np.stack([_rolled(profile, path, step, radius) for path in range(profile.paths)], axis=1)
+    return changed(profile, f"rolled over by a wheel of {radius:g} m radius", elevation=like(profile, highest))
+
+
+def _rolled(profile: Profile, path: int, step: float, radius: float) -> FloatArray:
+    """Height of the wheel at every station of a path."""
+    elevation, spline = profile.columns[:, path], profile.along(path)
+    # How far it is bent down at both ends of an interval, and so may rise between them.
+    bent = np.pad(np.maximum(-np.diff(elevation, 2), 0.0), 1, mode="edge")
+    least = np.minimum(bent[:-1], bent[1:])
+    # Between places h apart the wheel is lower by up to h²/8 times the curvatures of wheel and road. What is too
+    # sharp for so many places is an edge, and that is a station [8 to 32].
+    sharpest = max(-float(spline(profile.stations, 2).min()), 0.0)
+    places = min(int(np.ceil(np.sqrt(1 + radius * sharpest))), 16)
     highest = elevation.copy()
     # Farther out the wheel is higher above its lowest point than anything on the profile.
-    relief = min(float(np.ptp(elevation, axis=0).max()), radius)
-    for k in range(1, int(np.sqrt(relief * (2 * radius - relief)) / step) + 1):
-        if k >= len(elevation) or k * step >= radius:
-            break
-        clearance = radius - np.sqrt(radius**2 - (k * step) ** 2)
-        np.maximum(highest[k:], elevation[:-k] - clearance, out=highest[k:])
-        np.maximum(highest[:-k], elevation[k:] - clearance, out=highest[:-k])
-    return Profile(
-        profile.stations,
-        highest[:, 0] if profile.same_across else highest,
-        source=profile.source,
-        steps=(*profile.steps, f"rolled over by a wheel of {radius:g} m radius"),
-        across=profile.across,
-    )
+    relief = min(float(np.ptp(elevation)) + 0.5 * least.max(initial=0.0), radius)
+    reach = np.sqrt(relief * (2 * radius - relief))
+    for part in np.arange(places) / places:
+        between = elevation
+        if part:
+            crest = np.maximum(elevation[:-1], elevation[1:]) + 0.5 * least
+            between = np.minimum(spline(profile.stations[:-1] + part * step), crest)
+        for k in range(int(-reach / step) - 1, int(reach / step) + 1):
+            away = (k + part) * step
+            if abs(away) > reach or not -len(elevation) < k < len(between):
+                continue
+            lifted = between - (radius - np.sqrt(max(radius**2 - away**2, 0.0)))
+            # The place k + part steps ahead of a station.
+            at = slice(max(-k, 0), min(len(elevation), len(between) - k))
+            np.maximum(highest[at], lifted[at.start + k : at.stop + k], out=highest[at])
+    return highest
 
 
 def _shared_stations(profiles: Sequence[Profile]) -> FloatArray:

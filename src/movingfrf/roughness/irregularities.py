@@ -55,6 +55,7 @@ def harmonic(
         distance,
         amplitude * np.sin(2 * np.pi * distance / wavelength + phase),
         source=f"a sine wave of {amplitude:g} m amplitude and {wavelength:g} m length",
+        full_width=True,
     )
 
 
@@ -96,6 +97,7 @@ def bump(*, height: float, width: float, at: float, length: float, start: float 
         distance,
         height * smooth_step(2 * (0.5 - np.abs((distance - at) / width - 0.5))),
         source=f"a bump of {height:g} m height and {width:g} m length at {at:g} m",
+        full_width=True,
     )
 
 
@@ -149,6 +151,7 @@ def pothole(*, depth: float, width: float, edge: float, at: float, length: float
         distance,
         -depth * smooth_step(to_the_nearer_rim / edge),
         source=f"a pothole of {depth:g} m depth and {width:g} m length at {at:g} m",
+        full_width=True,
     )
 
 
@@ -203,6 +206,7 @@ def faulted_slabs(
         distance,
         height * (from_joint / spacing + 0.5 - smooth_step(from_joint / edge + 0.5)),
         source=f"slabs of {spacing:g} m faulted by {height:g} m, joints at {at:g} m",
+        full_width=True,
     )
 
 
@@ -280,6 +284,7 @@ def dipped_joints(
         distance,
         -depth * np.maximum(1 - away / reach, 0.0) ** 2,
         source=f"rail joints every {spacing:g} m, dipped by {depth:g} m, one at {at:g} m",
+        full_width=True,
     )
 
 
@@ -350,7 +355,10 @@ def dipped_weld(
         for d, wave in ((depth, width), (short_depth, short_width))
     ]
     return Profile(
-        distance, -np.sum(dips, axis=0), source=f"a weld dipped by {depth:g} m over {width:g} m at {at:g} m"
+        distance,
+        -np.sum(dips, axis=0),
+        source=f"a weld dipped by {depth:g} m over {width:g} m at {at:g} m",
+        full_width=True,
     )
 
 
@@ -428,6 +436,7 @@ def wheel_flat(
         distance,
         elevation,
         source=f"a wheel of {radius:g} m radius with a flat of {chord:g} m ({kind}) at {at:g} m",
+        full_width=True,
     )
 
 
@@ -497,6 +506,7 @@ def polygon(
         distance,
         elevation,
         source=f"a wheel of {radius:g} m radius out of round in the orders {', '.join(f'{k:g}' for k in waves)}",
+        full_width=True,
     )
 
 

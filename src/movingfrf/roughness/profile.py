@@ -36,6 +36,9 @@ class Profile:
         What was done to it since, one sentence each, in order.
     across : tuple of float, length path, optional
         Lateral position of each path [m], positive to the left, where it is known.
+    full_width : bool
+        Whether a profile without columns is meant for the whole width, as a joint or a hump is, and not known along
+        one path only.
 
     Raises
     ------
@@ -53,6 +56,7 @@ class Profile:
     source: str = ""
     steps: tuple[str, ...] = ()
     across: tuple[float, ...] | None = None
+    full_width: bool = False
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -151,6 +155,11 @@ class Profile:
     def same_across(self) -> bool:
         """Whether all paths have the same elevation: there are no columns."""
         return np.ndim(self.elevation) == 1
+
+    @property
+    def one_path(self) -> bool:
+        """Whether it is known along one path only: without columns, not level, not meant for the whole width."""
+        return self.same_across and not self.full_width and bool(np.ptp(self.columns))
 
     @property
     def alike(self) -> list[list[int]]:

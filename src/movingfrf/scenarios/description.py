@@ -16,7 +16,7 @@ from movingfrf.response.simulation import line_of
 from movingfrf.response.survey import survey
 from movingfrf.response.system import System
 from movingfrf.response.truncation import EVERYWHERE, Truncation
-from movingfrf.results.findings import near_critical
+from movingfrf.results.findings import near_critical, one_path
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
 from movingfrf.roughness.straight import mean_slope, straight
@@ -91,7 +91,8 @@ def described(scenario: Scenario) -> Description:
                     contacts = "Contacts in steady travel", _contacts(vehicle, steady.load, steady.deflection)
             of_vehicle, _, vibrations = described_vehicle(vehicle)
             sections += [of_vehicle, contacts, vibrations, ("Roughness", _roughness(road))]
-            found += _remarks_on_vehicle(vehicle, scenario.journey)
+            paths = one_path(road.profile.one_path, vehicle.paths, vehicle.across)
+            found += [*_remarks_on_vehicle(vehicle, scenario.journey), *(finding.message for finding in paths)]
         case Passage() as passage:
             sections.append(("Loads", _loads(passage)))
     return Description(sections=[*sections, ("Run", _run(scenario.case))], remarks=found, refusal=refusal)

@@ -24,7 +24,7 @@ from movingfrf.roughness.spectra.coherence import Coherence, ExponentialCoherenc
 from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.scenarios import forces
 from movingfrf.scenarios.kind import Family, Kind, family, keys_of
-from movingfrf.scenarios.roads import ROADS, SPECTRA
+from movingfrf.scenarios.roads import ROADS, SPECTRA, Way
 from movingfrf.stepping.finite_plate import finite_plate
 from movingfrf.stepping.finite_track import finite_track
 from movingfrf.vehicles.assembly import Body, Hinge, Suspension, assemble
@@ -40,7 +40,7 @@ from movingfrf.vehicles.trucks import Axle, Unit, WalkingBeam, truck
 from movingfrf.vehicles.vehicle import Vehicle
 
 
-def profile(*, interval: tuple[float, float], **given: Any) -> Road:
+def profile(*, way: Way, **given: Any) -> Road:
     """Read a measured profile, and prepare it as far as options ask for it; the description says what was done."""
     ready, understood = read_prepared(**given)
     return Road(ready, "; ".join([understood, *ready.steps]))

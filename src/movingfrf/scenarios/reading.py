@@ -15,6 +15,7 @@ from movingfrf.response.simulation import line_of
 from movingfrf.roughness.excitation import require_cover
 from movingfrf.scenarios.kind import Family, Key, Kind
 from movingfrf.scenarios.kinds import DRIVE, PASSAGE, TABLES, VEHICLE
+from movingfrf.scenarios.roads import Way
 from movingfrf.scenarios.scenario import Drive, Passage, Scenario, ScenarioError
 from movingfrf.scenarios.stepped import require_journey
 from movingfrf.stepping.finite_guideway import FiniteGuideway
@@ -181,16 +182,16 @@ class _Builder:
         guideway = self.section(tables, "guideway", DRIVE["guideway"])
         vehicle = self.section(tables, "vehicle", DRIVE["vehicle"])
         journey = self.section(tables, "run", DRIVE["run"])
-        # Some interval, so that the road is checked even where the journey itself is refused.
-        interval = (0.0, 1.0)
+        # Some way, so that the road is checked even where the journey itself is refused.
+        way = Way(0.0, 1.0, (0.0, 1.0))
         if journey is not None and vehicle is not None:
-            interval = journey.interval(vehicle)
+            way = Way.of(journey, vehicle)
             if self._attempt("run:", lambda: line_of(journey, vehicle)) is False:
                 return None
-        road = self.section(tables, "roughness", DRIVE["roughness"], interval=interval)
+        road = self.section(tables, "roughness", DRIVE["roughness"], way=way)
         if vehicle is not None and road is not None and journey is not None:
-            paths = vehicle.paths
-            self._attempt("roughness:", lambda: require_cover(road.profile, *interval, paths))
+            paths, (first, last) = vehicle.paths, journey.interval(vehicle)
+            self._attempt("roughness:", lambda: require_cover(road.profile, first, last, paths))
         return None if self.faults else Drive(guideway=guideway, vehicle=vehicle, road=road, journey=journey)
 
     def section(self, tables: Mapping[str, Any], key: str, family: Family, **given: Any) -> Any:

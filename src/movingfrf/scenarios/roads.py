@@ -1,14 +1,14 @@
 """What a scenario's [roughness] can be: a spectrum realised, shapes on a level road, and combinations of these.
 
-Each kind is made from what Python offers, so that its keys are that function's keyword arguments; the length and
-the start of the road follow from the interval that the journey covers.
+Each kind is made from what Python offers, so that its keys are that function's keyword arguments; where the road
+begins and ends follows from the way that the journey takes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from movingfrf._basics.checks import checking
 from movingfrf.roughness import combination, irregularities
@@ -21,6 +21,62 @@ from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.roughness.spectra.tabulated import TabulatedSpectrum, ThirdOctaveSpectrum, iso3095_limit
 from movingfrf.roughness.spectra.two_slope import TwoSlopeRoad
 from movingfrf.scenarios.kind import Key, Kind, chosen, keys_of
+from movingfrf.vehicles.journey import Journey
+from movingfrf.vehicles.vehicle import Vehicle
+
+
+class Way(NamedTuple):
+    """Where a journey needs a road.
+
+    Parameters
+    ----------
+    first, last : float
+        First and last distance that a contact meets [m]: between them lies the length to which a realised road
+        belongs.
+    covering : tuple of float
+        First and last distance that the road covers [m]: what contacts touch ahead and behind, and more beyond the
+        end.
+    """
+
+    first: float
+    last: float
+    covering: tuple[float, float]
+
+    @classmethod
+    def of(cls, journey: Journey, vehicle: Vehicle) -> Way:
+        """Find the way of a vehicle.
+
+        Parameters
+        ----------
+        journey : Journey
+            How it travels.
+        vehicle : Vehicle
+            The vehicle.
+
+        Returns
+        -------
+        Way
+            From the hindmost contact at the start to the foremost at the end.
+        """
+        begin, end = journey.interval(vehicle)
+        reach = 0.5 * max((contact.footprint + contact.cams for contact in vehicle.contacts), default=0.0)
+        # What comes after the end of a record matters to it as well, and would have to be guessed [5 to 10 m, and
+        # 0.25 to 1 s].
+        beyond = 5.0 + 0.25 * journey.speed
+        # The length belongs to the duration, whatever whole number of steps is nearest to it.
+        last = end - journey.distance + journey.speed * journey.duration
+        return cls(begin, last, (begin - reach, max(end, last) + reach + beyond))
+
+    @property
+    def realised(self) -> dict[str, Any]:
+        """Arguments that make a realised road: its own length, and where stations are needed."""
+        return {"length": self.last - self.first, "start": self.first, "covering": self.covering}
+
+    @property
+    def shaped(self) -> dict[str, Any]:
+        """Arguments that make a shape there."""
+        first, last = self.covering
+        return {"length": last - first, "start": first}
 
 
 def by_class(spectrum: Any) -> Kind:
@@ -46,41 +102,62 @@ def by_class(spectrum: Any) -> Kind:
     )
 
 
-REALISING = keys_of(realise, without=["spectrum", "length", "start"])
+# What the way says of a realisation.
+OF_THE_WAY = ("length", "start", "covering")
+REALISING = keys_of(realise, without=["spectrum", *OF_THE_WAY])
 
 
 def realised(spectrum: Kind) -> Kind:
-    """Realise a spectrum over the interval: its own keys, then those of a realisation."""
+    """Realise a spectrum along the way: its own keys, then those of a realisation."""
 
-    def make(*, interval: tuple[float, float], **given: Any) -> Road:
-        first, last = interval
+    def make(*, way: Way, **given: Any) -> Road:
         made = spectrum.make(**chosen(given, spectrum.keys))
         how = {key.name: given.get(key.name, key.default) for key in REALISING}
-        profile = realise(made, length=last - first, start=first, **how)
+        profile = realise(made, **how, **way.realised)
         common = in_common(made, how["seed"], how["across"], how["coherence"])
         return Road(profile, profile.source, made, common)
 
     return replace(spectrum, make=make, keys=(*spectrum.keys, *REALISING))
 
 
-def shaped(shape: Callable[..., Profile], *, name: str | None = None) -> Kind:
-    """Make a shape, or a road that does not carry its spectrum, over the interval."""
+def laplace_road(*, way: Way, **given: Any) -> Road:
+    """Realise a road that is not Gaussian along the way.
 
-    def make(*, interval: tuple[float, float], **given: Any) -> Road:
-        first, last = interval
-        profile = shape(length=last - first, start=first, **given)
+    It does not carry its spectrum: random vibration in closed form would take it for a Gaussian one.
+
+    Parameters
+    ----------
+    way : Way
+        Where the road is needed.
+    **given : object
+        Further arguments of `realise_laplace`.
+
+    Returns
+    -------
+    Road
+        The road.
+    """
+    profile = realise_laplace(**given, **way.realised)
+    return Road(profile, profile.source)
+
+
+def shaped(shape: Callable[..., Profile]) -> Kind:
+    """Make a shape along the way."""
+
+    def make(*, way: Way, **given: Any) -> Road:
+        profile = shape(**given, **way.shaped)
         return Road(profile, profile.source)
 
-    return replace(Kind.of(shape, name=name, without=["length", "start"]), make=make)
+    return replace(Kind.of(shape, without=["length", "start"]), make=make)
 
 
-def superposed(*, interval: tuple[float, float], parts: Sequence[Road]) -> Road:
+def superposed(*, way: Way, parts: Sequence[Road]) -> Road:
     """Roads added up.
 
     Parameters
     ----------
-    interval : tuple of float
-        First and last distance that they cover [m].
+    way : Way
+        Where they are needed.
     parts : sequence of Road
         The roads.
 
@@ -93,13 +170,13 @@ def superposed(*, interval: tuple[float, float], parts: Sequence[Road]) -> Road:
     return Road(profile, "; ".join(part.description for part in parts))
 
 
-def side_by_side(*, interval: tuple[float, float], parts: Sequence[Road]) -> Road:
+def side_by_side(*, way: Way, parts: Sequence[Road]) -> Road:
     """Roads side by side, each a path of its own.
 
     Parameters
     ----------
-    interval : tuple of float
-        First and last distance that they cover [m].
+    way : Way
+        Where they are needed.
     parts : sequence of Road
         The roads, path by path.
 
@@ -126,11 +203,10 @@ SPECTRA = (
     Kind.of(iso3095_limit),
 )
 
-# Kinds of roads. A Laplace road does not carry its spectrum: random vibration in closed form would take it for a
-# Gaussian one.
+# Kinds of roads.
 ROADS = (
     *map(realised, SPECTRA),
-    shaped(realise_laplace, name="laplace_road"),
+    replace(Kind.of(realise_laplace, name="laplace_road", without=OF_THE_WAY), make=laplace_road),
     shaped(irregularities.harmonic),
     shaped(irregularities.bump),
     shaped(irregularities.pothole),
@@ -139,6 +215,6 @@ ROADS = (
     shaped(irregularities.dipped_weld),
     shaped(irregularities.wheel_flat),
     shaped(irregularities.polygon),
-    Kind.of(superposed, without=["interval"]),
-    Kind.of(side_by_side, without=["interval"]),
+    Kind.of(superposed, without=["way"]),
+    Kind.of(side_by_side, without=["way"]),
 )

@@ -137,7 +137,7 @@ def cdfm(
     Warns
     -----
     ValidityWarning
-        If contact would be lost.
+        If contact would be lost, or contacts on several paths meet a profile that is known along one.
 
     References
     ----------
@@ -242,7 +242,7 @@ def sim(
     Warns
     -----
     ValidityWarning
-        If contact would be lost.
+        If contact would be lost, or contacts on several paths meet a profile that is known along one.
 
     References
     ----------
@@ -376,7 +376,11 @@ def prepared_journey(
             scheme=repr(row),
             **guideway.attributes,
             iterations=trace.iterations,
-            findings=[*steady.findings, *find.contact_lost(force + steady.load, journey.time_step)],
+            findings=[
+                *steady.findings,
+                *find.contact_lost(force + steady.load, journey.time_step),
+                *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
+            ],
         )
         values = {
             "contact_force": force,

@@ -97,7 +97,7 @@ def duhamel(
     Warns
     -----
     ValidityWarning
-        If contact would be lost.
+        If contact would be lost, or contacts on several paths meet a profile that is known along one.
     """
     journey = Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend)
     return convolved(road, vehicle, profile, journey, compiled=compiled, progress=progress)
@@ -203,7 +203,10 @@ def convolved(
         **journey.settings,
         datum=seen.datum,
         critical_speed=road.critical_speed,
-        findings=find.contact_lost(force + load, time_step),
+        findings=[
+            *find.contact_lost(force + load, time_step),
+            *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
+        ],
     )
     return labelled(values, settings)
 
