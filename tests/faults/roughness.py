@@ -199,7 +199,7 @@ FAULTS = [
     ),
     Fault("seed ignored", "roughness/realisation.py", "default_rng(number)", "default_rng(0)"),
     Fault("second path is the first", "roughness/profile.py", "elevation[:, path]", "elevation[:, 0]"),
-    Fault("datum left in", "roughness/excitation.py", "pieces[3, 1:-1] -= datum", "pass"),
+    Fault("datum left in", "roughness/excitation.py", "level[3] -= datum + grade", "level[3] -= grade"),
     Fault(
         "blend twice as long",
         "roughness/excitation.py",
@@ -224,7 +224,22 @@ FAULTS = [
         "cams one behind the other only", "roughness/excitation.py", "[[-1.0], [1.0]] if cams", "[[-1.0]] if cams"
     ),
     Fault("footprint twice as long in space", "roughness/excitation.py", "0.5 * footprint\n", "1.0 * footprint\n"),
-    Fault("road that levels off at its end", "roughness/excitation.py", "(rising, high)", "(0.0, high)"),
+    Fault(
+        "road that levels off at its end",
+        "roughness/excitation.py",
+        "onward(after, slope, curvature, length), bc_type=((1, slope),",
+        "0.0 * after, bc_type=((1, 0.0),",
+    ),
+    Fault("slope of the end fades not", "_basics/smooth.py", "* (1.0 - smooth_step(beyond / length))", "* 1.0"),
+    Fault(
+        "grade left in",
+        "roughness/excitation.py",
+        "grade = grade_of(list(splines.values()), hindmost) if blend else 0.0",
+        "grade = 0.0",
+    ),
+    Fault("grade without a blend", "roughness/excitation.py", "hindmost) if blend else 0.0", "hindmost)"),
+    Fault("short profiles have grades", "roughness/excitation.py", "(SEEING.grade_over / length) ** 2", "1.0"),
+    Fault("no doubt past the end", "roughness/excitation.py", "np.square(off).mean(axis=0)", "0 * beyond"),
     Fault(
         "contacts abreast",
         "roughness/excitation.py",

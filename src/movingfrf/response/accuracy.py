@@ -3,29 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf.response.line import Given, Histories
-from movingfrf.response.sampling import Excited
+from movingfrf.response.sampling import SAMPLING, Excited
 from movingfrf.response.solve import solve
 from movingfrf.response.system import CoupledHistories, Response, System
 from movingfrf.response.truncation import EVERYWHERE, Truncation
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Doubt:
-    """What tunes the figures; in brackets, between what each number is safe."""
-
-    # A channel is as large as this share of the largest of its kind at least: one that hardly moves is no matter.
-    smallest: float = 1e-3  # [a convention]
-    # From this estimate on what a stated truncation changes is computed rather than estimated.
-    estimated: float = 1e-4  # [1e-5 to 5e-4]
-
-
-DOUBT = Doubt()
 
 
 def relative(
@@ -60,7 +46,7 @@ def relative(
     greatest = 0.0
     for mine, all_of_it, factor in zip(part, whole, factors, strict=True):
         of_whole = size(all_of_it)
-        of_whole = np.maximum(of_whole, DOUBT.smallest * of_whole.max(initial=0.0))
+        of_whole = np.maximum(of_whole, SAMPLING.smallest * of_whole.max(initial=0.0))
         share = np.divide(factor * size(mine), of_whole, out=np.zeros_like(of_whole), where=of_whole > 0)
         greatest = max(greatest, float(share.max(initial=0.0)))
     return greatest
@@ -137,7 +123,7 @@ def truncated(system: System, driven_by: Excited, response: Response, histories:
         The same, with the greatest relative change of any channel, root mean square over the record.
     """
     cut, omega = driven_by.truncation, driven_by.omega
-    if cut.error <= DOUBT.estimated:
+    if cut.error <= SAMPLING.estimated:
         return cut
     first = cut.untouched(omega)
     whole = solve(system, omega[first:], driven_by.spectra[..., first:], truncation=EVERYWHERE)

@@ -145,7 +145,7 @@ def influence(system: Sized, line: Line, magnitudes: FloatArray, truncation: flo
     starts = _bands(line, truncation)
     omega = line.omega((starts + np.r_[starts[1:], line.size] - 1) // 2)
     batch = BATCH.frequencies(system.entries)
-    pieces = [system.per_unit(omega[first : first + batch]) for first in range(0, omega.size, batch)]
+    pieces = map(system.per_unit, np.split(omega, range(batch, omega.size, batch)))
     added, whole = (np.concatenate(parts, axis=2) for parts in zip(*pieces, strict=True))
     cases = magnitudes.reshape(-1, *magnitudes.shape[-2:])
     power = np.add.reduceat(cases**2, starts, axis=2)

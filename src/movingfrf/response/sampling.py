@@ -44,6 +44,10 @@ class Sampling:
     most: int = 2**23  # [2**21 to 2**27: time and memory only]
     # Share of the solved frequencies over which the road fades out.
     fades: float = 0.1  # [0.05 to 0.2]
+    # For figures a channel is as large as this share of the largest of its kind at least: one that hardly moves is
+    # no matter. From the other one on, what a stated truncation changes is computed rather than estimated.
+    smallest: float = 1e-3  # [a convention]
+    estimated: float = 1e-4  # [1e-5 to 5e-4]
 
 
 SAMPLING = Sampling()

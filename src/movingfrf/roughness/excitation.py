@@ -31,10 +31,10 @@ class Seeing:
 
     # Samples that are averaged about one level: on the way of so many a road does not climb far.
     together: int = 4096  # [256 to 16 384]
-    # Past its end a profile goes on over so many of its last steps at least, over this share of its length at most,
+    # Past its end a profile goes on over so many of its last steps at least, over so many times its length at most,
     # in so many cubic pieces.
     fewest: int = 4  # [2 to 16]
-    longest: float = 0.25  # [0.1 to 1]
+    longest: float = 1.0  # [0.1 to 2]
     pieces: int = 64  # [32 to 256]
     # The grade is that of so many metres from the start of the hindmost contact on, as far as the profile reaches:
     # the median of the slopes over half of it, at so many places. What is less than `least`, more on a shorter
