@@ -88,14 +88,14 @@ def test_beyond_its_ends_a_straight_profile_goes_straight_on():
     excitation = excite(slope, touch, start=0.0, distance=10.0, blend=0.0)
     travelled = np.array([0.0, 0.1, 5.0, 9.9, 10.0])
     np.testing.assert_allclose(excitation.elevation(travelled)[0], 0.03 * travelled, atol=3e-6)
-    np.testing.assert_allclose(excitation.rate(travelled, 10.0)[0], 0.3, rtol=3e-4)
+    np.testing.assert_allclose(excitation.rate(travelled, 10.0)[0], 0.3, rtol=1e-3)
 
 
 def test_past_its_end_a_profile_goes_on_in_value_slope_and_curvature():
     along = excite(SURFACE, PLAIN, start=2.0, distance=30.0, blend=0.0).along[0]
     near = along.ends + 1e-7 * np.array([-1.0, 1.0])
     # Its curvature to within the pieces that it fades in.
-    for order, jump in enumerate((1e-9, 1e-8, 1e-4)):
+    for order, jump in enumerate((1e-8, 1e-7, 1e-4)):
         before, after = along.level(near, order)
         assert abs(after - before) < jump, order
     assert abs(along.level(along.ends - 1e-7, 2)) > 1e-2
@@ -133,7 +133,7 @@ def test_a_road_without_a_grade_has_none():
 
 
 def test_guesses_past_the_end_are_off_by_as_much_as_is_said():
-    """Over sixty roads that go on, the root mean square of what a footprint finds there is the one that is told."""
+    """Over sixty roads that go on, the median of what a footprint is off there is the one that is told."""
     touch = Touch(positions=np.zeros(1), paths=[0], footprints=np.array([0.5]), cams=np.zeros(1))
     off, said = [], []
     for seed in range(60):
@@ -143,10 +143,10 @@ def test_guesses_past_the_end_are_off_by_as_much_as_is_said():
         known, guessed = (excite(one, touch, start=0.0, distance=40.0, blend=0.0) for one in (road, cut))
         at = np.array([39.9, 40.0])
         off.append(known.elevation(at)[0] - guessed.elevation(at)[0])
-        said.append(guessed.doubt(at)[0])
+        said.append(np.median(np.abs(guessed.doubt(at)[:, 0]), axis=0))
         assert known.guessed == 0.0
         assert guessed.guessed == pytest.approx(0.25)
-    ratio = np.sqrt(np.mean(np.square(off), axis=0) / np.mean(np.square(said), axis=0))
+    ratio = np.median(np.abs(off), axis=0) / np.median(said, axis=0)
     assert (ratio > 0.5).all()
     assert (ratio < 2.0).all()
 

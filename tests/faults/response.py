@@ -45,8 +45,8 @@ FAULTS = [
     Fault(
         "a sharp end of the content",
         "response/sampling.py",
-        "spectra[..., ends:] *= 1.0",
-        "spectra[..., ends:] *= 1.0 + 0.0",
+        "spectra[..., ends:] *= 1.0 - smooth_step(np.arange(1, fading + 1) / fading)",
+        "pass",
     ),
     Fault(
         "sampled at the output's step",

@@ -239,7 +239,12 @@ FAULTS = [
     ),
     Fault("grade without a blend", "roughness/excitation.py", "hindmost) if blend else 0.0", "hindmost)"),
     Fault("short profiles have grades", "roughness/excitation.py", "(SEEING.grade_over / length) ** 2", "1.0"),
-    Fault("no doubt past the end", "roughness/excitation.py", "np.square(off).mean(axis=0)", "0 * beyond"),
+    Fault(
+        "no doubt at the end",
+        "roughness/excitation.py",
+        "CubicSpline(beyond, off,",
+        "CubicSpline(beyond, 0 * off,",
+    ),
     Fault(
         "contacts abreast",
         "roughness/excitation.py",

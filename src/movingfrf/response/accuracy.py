@@ -20,7 +20,7 @@ def relative(
     *,
     peaks: bool = True,
     factors: Sequence[FloatArray | float] = (1.0, 1.0, 1.0, 1.0),
-) -> float:
+) -> FloatArray:
     """Greatest share that a part of the response has of any channel.
 
     Parameters
@@ -34,8 +34,8 @@ def relative(
 
     Returns
     -------
-    float
-        Relative to the channel.
+    ndarray, shape (case,)
+        Relative to the channel, for each case of the part.
     """
 
     def size(records: Histories) -> FloatArray:
@@ -43,12 +43,13 @@ def relative(
             return np.abs(records.values).max(axis=-1)
         return np.sqrt(np.square(records.values).mean(axis=-1))
 
-    greatest = 0.0
+    greatest = np.zeros(len(part.force.values))
     for mine, all_of_it, factor in zip(part, whole, factors, strict=True):
         of_whole = size(all_of_it)
         of_whole = np.maximum(of_whole, SAMPLING.smallest * of_whole.max(initial=0.0))
-        share = np.divide(factor * size(mine), of_whole, out=np.zeros_like(of_whole), where=of_whole > 0)
-        greatest = max(greatest, float(share.max(initial=0.0)))
+        of_part = factor * size(mine)
+        share = np.divide(of_part, of_whole, out=np.zeros_like(of_part), where=of_whole > 0)
+        greatest = np.maximum(greatest, share.max(axis=-1, initial=0.0))
     return greatest
 
 
@@ -75,10 +76,12 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
         spectra[..., : count // 2] = 0.0
     ports = [spectra.shape[-2] for spectra in (response.force, response.deflection, response.motion)]
     beyond = np.split(driven_by.beyond, np.cumsum([*ports, ports[-1]])[:-1])
-    return relative(Response(*octave).histories(driven_by.line), histories, factors=beyond)
+    return float(relative(Response(*octave).histories(driven_by.line), histories, factors=beyond).max())
 
 
-def past_the_end(system: System, driven_by: Excited, given: Given, histories: CoupledHistories) -> float:
+def past_the_end(
+    system: System, driven_by: Excited, given: Given, histories: CoupledHistories, known: int
+) -> float:
     """Estimate what guesses about the road past the end of its profile change.
 
     Parameters
@@ -88,9 +91,11 @@ def past_the_end(system: System, driven_by: Excited, given: Given, histories: Co
     driven_by : Excited
         What was solved.
     given : Given
-        How far the elevation is off as a rule.
+        What guesses are off, one case each.
     histories : CoupledHistories
         The records.
+    known : int
+        So many of their samples know the road; what is guessed may be far larger.
 
     Returns
     -------
@@ -98,9 +103,9 @@ def past_the_end(system: System, driven_by: Excited, given: Given, histories: Co
         Relative to the largest value of a channel.
     """
     omega = driven_by.omega
-    off = driven_by.line.spectra(given)[..., : omega.size]
-    response = solve(system, omega, off, truncation=driven_by.truncation)
-    return relative(response.histories(driven_by.line), histories)
+    response = solve(system, omega, driven_by.likewise(given), truncation=driven_by.truncation)
+    before = CoupledHistories(*(Histories(some.values[..., :known], some.wrapped) for some in histories))
+    return float(np.median(relative(response.histories(driven_by.line), before)))
 
 
 def truncated(system: System, driven_by: Excited, response: Response, histories: CoupledHistories) -> Truncation:
@@ -133,5 +138,5 @@ def truncated(system: System, driven_by: Excited, response: Response, histories:
         difference[..., first:] = without
         difference[..., first : with_it.shape[-1]] -= with_it[..., first:]
         change.append(difference)
-    error = relative(Response(*change).histories(driven_by.line), histories, peaks=False)
+    error = float(relative(Response(*change).histories(driven_by.line), histories, peaks=False).max())
     return Truncation(frequency=cut.frequency, error=error)

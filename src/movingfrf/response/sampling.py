@@ -59,6 +59,7 @@ class Excited(NamedTuple):
     line: Line
     spectra: ComplexArray  # (*case, port, frequency), as far as they are solved
     truncation: Truncation
+    ends: int  # number of the frequency from which on they fade out
     finest: bool  # whether no finer step would help, or none was to be looked for
     beyond: FloatArray  # (output,) what lies beyond over what lies in the highest octave that is solved
     not_shown: FloatArray  # (output,) share of it, relative L2, beyond the Nyquist frequency of the record
@@ -72,6 +73,10 @@ class Excited(NamedTuple):
     def omega(self) -> ComplexArray:
         """Frequencies that are solved [rad/s]."""
         return self.line.omega(slice(self.spectra.shape[-1]))
+
+    def likewise(self, given: Given) -> ComplexArray:
+        """Spectra of something else, as far as this is solved."""
+        return _ended(self.line.spectra(given), self.ends, self.spectra.shape[-1])
 
 
 def excited(
@@ -131,10 +136,6 @@ def excited(
     else:
         count = min(stated, line.size)
         ends = int(count / (1 + SAMPLING.fades))
-    spectra = line.spectra(driving)[..., :count]
-    # What a sharp cut discards would ring on, and the window raises what comes late.
-    fading = count - ends
-    spectra[..., ends:] *= 1.0 - smooth_step(np.arange(1, fading + 1) / fading)
     if truncation is None:
         kept = min(found.negligible_from(found.added, TRUNCATION.negligible, magnitudes), count)
         # Where the response to rest alone is kept, some frequency below the next.
@@ -143,12 +144,24 @@ def excited(
     cut = replace(cut, error=found.error(cut.untouched(line.omega()), count))
     return Excited(
         line=line,
-        spectra=spectra,
+        spectra=_ended(line.spectra(driving), ends, count),
         truncation=cut,
+        ends=ends,
         finest=finest or stated is not None,
         beyond=_beyond(found, ends, count),
         not_shown=found.shares(line.padded // 2 + 1, count),
     )
+
+
+def _ended(spectra: ComplexArray, ends: int, count: int) -> ComplexArray:
+    """Let spectra fade out between two numbers of frequencies.
+
+    What a sharp cut discards would ring on, and the window raises what comes late.
+    """
+    spectra = spectra[..., :count]
+    fading = count - ends
+    spectra[..., ends:] *= 1.0 - smooth_step(np.arange(1, fading + 1) / fading)
+    return spectra
 
 
 def _beyond(found: Influence, ends: int, count: int) -> FloatArray:

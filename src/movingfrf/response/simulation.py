@@ -201,8 +201,9 @@ def driven(
     cut = truncated(system, driven_by, response, histories)
     guessed = 0.0
     if excitation.guessed > 0:
-        off = excitation.doubt(journey.speed * driven_by.line.instants)[None]
-        guessed = past_the_end(system, driven_by, Given(off), histories)
+        off = excitation.doubt(journey.speed * driven_by.line.instants)
+        known = max(int((journey.distance - excitation.guessed) / (journey.speed * journey.time_step)), 1)
+        guessed = past_the_end(system, driven_by, Given(off), histories, known)
     steady = surveyed.steady
     total = steady.load[:, None] + force.values[0]
     found = [

@@ -43,8 +43,10 @@ class Seeing:
     places: int = 101  # [51 to 1001]
     least: float = 2e-3  # [a convention]
     deviations: float = 2.0  # [a convention]
-    # How well the road is guessed past the end of a profile is told from so many guesses before it.
-    guesses: int = 64  # [16 to 256]
+    # How well the road is guessed past the end of a profile is told from so many guesses before it, which lie so
+    # many times the length of a guess apart.
+    guesses: int = 15  # [7 to 63]
+    apart: float = 4.0  # [1 to 10]
 
 
 SEEING = Seeing()
@@ -126,21 +128,20 @@ class Along(NamedTuple):
             found[some] = self._averaged(distance[some], footprint, cams, derivative)
         return found
 
-    def doubt(self, reach: float) -> PPoly:
-        """How far a guess past the end of the profile is off as a rule, over the distance from there [m].
+    def doubt(self, reach: float) -> CubicSpline:
+        """How far guesses past the end of a profile are off, over the distance from there [m].
 
-        Guesses past places within the profile are off from what is there.
+        Guesses past places within the profile are off from what is there; an axis of guesses comes first.
         """
         from scipy.interpolate import CubicSpline
 
         last = self.ends - reach
-        span = max(min(SEEING.guesses * reach, last - self.level.x[1]), 0.0)
+        span = max(min(SEEING.apart * SEEING.guesses * reach, last - self.level.x[1]), 0.0)
         here = last - span * np.linspace(0.0, 1.0, SEEING.guesses)[:, None]
         beyond = np.linspace(0.0, reach, SEEING.pieces + 1)
-        slope, curvature = self.level(here, 1), self.level(here, 2)
-        guessed = onward(beyond, slope, curvature, self.fades)
+        guessed = onward(beyond, self.level(here, 1), self.level(here, 2), self.fades)
         off = guessed - (self.level(here + beyond) - self.level(here))
-        return CubicSpline(beyond, np.sqrt(np.square(off).mean(axis=0)), bc_type=((1, 0.0), "not-a-knot"))
+        return CubicSpline(beyond, off, axis=1, bc_type=((1, np.zeros(SEEING.guesses)), "not-a-knot"))
 
     def _averaged(self, distance: FloatArray, footprint: float, cams: float, derivative: int) -> FloatArray:
         """Average a stretch of it, counted from where that begins and about the level there.
@@ -236,19 +237,26 @@ class Excitation:
         return rate
 
     def doubt(self, travelled: FloatArray) -> FloatArray:
-        """How far the elevation under each contact is off as a rule, as for `elevation`, past the end of a profile.
+        """How far the elevation under each contact may be off where it reaches past the end of a profile.
 
-        A footprint or a cam reaches there before its contact does.
+        Parameters
+        ----------
+        travelled : ndarray, shape (time,)
+            Distances travelled [m], ascending.
+
+        Returns
+        -------
+        ndarray, shape (guess, contact, time)
+            What several guesses within the profile were off [m].
         """
-        doubt = np.zeros((self.touch.positions.size, travelled.size))
+        doubt = np.zeros((SEEING.guesses, self.touch.positions.size, travelled.size))
         for row, along, distance, (footprint, cams), _ in self._each(travelled):
             reach = 0.5 * (footprint + cams)
-            if not reach:
-                continue
-            off = along.doubt(reach)
-            past = np.clip(distance + reach - along.ends, 0.0, reach)
-            feet = 2.0 if cams else 1.0
-            doubt[row] = (off.antiderivative()(past) / footprint if footprint else off(past)) / feet
+            first = int(np.searchsorted(distance, along.ends - reach))
+            if reach and first < travelled.size:
+                off, past = along.doubt(reach), np.minimum(distance[first:] + reach - along.ends, reach)
+                touched = off.antiderivative()(past) / footprint if footprint else off(past)
+                doubt[:, row, first:] = touched / (2.0 if cams else 1.0)
         return doubt
 
     def _each(
