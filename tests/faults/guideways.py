@@ -48,6 +48,17 @@ FAULTS = [
     Fault("tension for compression", "guideways/tensioned.py", "{(2, 0): self.force}", "{(2, 0): -self.force}"),
     Fault("buckled track let in", "guideways/critical.py", "if not positive.size:", "if True:"),
     Fault("shortest wave that buckles", "guideways/critical.py", "among)).argmin()", "among)).argmax()"),
+    Fault(
+        "front of the waves forgotten",
+        "guideways/critical.py",
+        "[*dips, *waves.fronts, slowest.min()]",
+        "[*dips, slowest.min()]",
+    ),
+    Fault(
+        "waves of six decades", "guideways/critical.py", "first, last = _corners(table)", "first, last = 1.0, 1.0"
+    ),
+    Fault("climb past a root", "guideways/critical.py", "value * rest[:, 0] > 0", "value == value"),
+    Fault("mass below on a shear layer", "guideways/track.py", "if massless and (", "if ("),
     Fault("compressed or not", "guideways/critical.py", "rise * below < above * fall", "False"),
     Fault("layers side by side", "guideways/foundations.py", ".in_series(layer)", " + layer"),
     # What whoever writes a guideway need not write.
