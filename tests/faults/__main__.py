@@ -80,6 +80,7 @@ REFERENCE = [
     "tests/stepping/test_elements.py",
     "tests/stepping/test_enveloping.py",
     "tests/stepping/test_sampled.py",
+    "tests/stepping/test_record.py",
     "tests/stepping/test_coupled.py",
     "tests/stepping/test_coupled_laws.py",
     "tests/stepping/test_duhamel.py",
@@ -97,10 +98,10 @@ AT_A_TIME, LIMIT = 2, 600
 def selection(fault: Fault | None) -> list[str]:
     """List what runs against a fault: first the tests that lie next to it."""
     file = fault.file if fault else ""
-    independent = file.startswith(("stepping/", "guideways/sampled"))
+    independent = file.startswith(("stepping/", "guideways/sampled", "guideways/record", "guideways/files"))
     if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE
-    if file.startswith(("scenarios/", "guideways/files")):
+    if file.startswith("scenarios/"):
         return SCENARIOS + SELECTION
     if file.startswith(SHOWN):
         return REPORTS + SELECTION + REFERENCE

@@ -73,7 +73,33 @@ FAULTS = [
         "else (self.source_across, self.across)",
     ),
     # Steady travel, footprint, prescribed forces.
-    Fault("first sample counts fully", "guideways/sampled.py", "samples[0] *= 0.5", "samples[0] *= 1.0"),
+    Fault("root of time for a straight line", "guideways/record.py", "= (1.0, 0.5)", "= (1.0,)"),
+    Fault("series of the onset cut short", "guideways/record.py", "series: int = 70", "series: int = 2"),
+    Fault(
+        "onset by trapezoids",
+        "guideways/sampled.py",
+        "self.samples, stepped=self.stepped)",
+        "self.samples, stepped=True)",
+    ),
+    Fault(
+        "what was stepped as if exact",
+        "guideways/sampled.py",
+        "self.samples, stepped=self.stepped)",
+        "self.samples, stepped=False)",
+    ),
+    Fault("cut off without a word", "guideways/sampled.py", "(*self._cut_off(largest), *self", "(*self"),
+    Fault("long step without a word", "guideways/sampled.py", "*self._coarse(largest), ", ""),
+    Fault(
+        "remarks forgotten", "guideways/sampled.py", "*self._coarse(largest), *remarks)", "*self._coarse(largest))"
+    ),
+    Fault(
+        "tail of the last sample alone",
+        "guideways/record.py",
+        "rates = np.log(waves) / step",
+        "rates = np.log(waves) / time_step",
+    ),
+    Fault("deaf to the guideway", "guideways/guideway.py", 'getattr(guideway, "findings", ())', "()"),
+    Fault("file without remarks", "guideways/files.py", "for remark in guideway.remarks]", "for remark in ()]"),
     Fault("transform of the other sign", "guideways/sampled.py", "phase = -1j", "phase = 1j"),
     Fault("nothing is beyond Nyquist", "guideways/sampled.py", "<= np.pi / self.time_step", "<= np.inf"),
 ]

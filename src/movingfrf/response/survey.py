@@ -11,6 +11,7 @@ import numpy as np
 
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
+from movingfrf.guideways.guideway import findings_of
 from movingfrf.response.batches import BATCH, applied, unthreaded
 from movingfrf.response.line import Line
 from movingfrf.response.stability import along_the_axis, require_stable, stretches
@@ -85,7 +86,7 @@ def survey(system: System, excited: Excited | None = None) -> Survey:
         If vehicle and guideway are unstable together.
     """
     critical_speed = float(system.guideway.critical_speed)
-    findings = find.near_critical(system.speed, critical_speed)
+    findings = [*find.near_critical(system.speed, critical_speed), *findings_of(system.guideway)]
     batch = BATCH.frequencies(system.entries)
     path = stretches(along_the_axis(system.vehicle, system.speed), batch)
     starts = np.zeros(0, int) if excited is None else bands(excited)

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import json
-import sys
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
-from types import FrameType
-from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.checks import ValidityWarning
+from movingfrf._basics.checks import Finding as Finding
+from movingfrf._basics.checks import warned
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,13 +25,6 @@ class Thresholds:
 
 
 THRESHOLDS = Thresholds()
-
-
-class Finding(NamedTuple):
-    """One thing to know about a result."""
-
-    code: str
-    message: str
 
 
 def contact_lost(total_force: FloatArray, time_step: float) -> list[Finding]:
@@ -122,11 +112,4 @@ def beyond_nyquist(roughness: ComplexArray, time_step: float) -> list[Finding]:
 
 def announced(found: Iterable[Finding]) -> str:
     """Warn of every finding, at the line that called the package, and return them all as JSON text."""
-    level = 1
-    frame: FrameType | None = sys._getframe()
-    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "movingfrf":
-        level, frame = level + 1, frame.f_back
-    found = list(found)
-    for finding in found:
-        warnings.warn(finding.message, ValidityWarning, stacklevel=level)
-    return json.dumps([finding._asdict() for finding in found])
+    return json.dumps([finding._asdict() for finding in warned(found)])
