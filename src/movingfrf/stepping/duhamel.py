@@ -331,8 +331,8 @@ def weights(guideway: SampledGuideway, time_step: float) -> tuple[FloatArray, Fl
     trapezoid[[0, -1]] *= 0.5
     pieces = np.lib.stride_tricks.sliding_window_view(padded, count + 1, axis=0)[::count]
     later, earlier = np.zeros((2, steps + 1, samples.shape[1]))
-    # Hats have kinks where halves meet: the trapezoidal rule errs there by Δt²/12 times the change of slope, unless it
-    # is the samples' own.
+    # Hats have kinks where halves meet: the trapezoidal rule errs there by Δt²/12 times the change of slope, unless
+    # it is the samples' own.
     kinks = np.zeros(count + 1)
     if not guideway.stepped:
         kinks[[0, -1]] = np.array([-1.0, 1.0]) * guideway.time_step / (12 * count)
