@@ -82,6 +82,7 @@ REFERENCE = [
     "tests/stepping/test_elements.py",
     "tests/stepping/test_enveloping.py",
     "tests/stepping/test_sampled.py",
+    "tests/stepping/test_record.py",
     "tests/stepping/test_coupled.py",
     "tests/stepping/test_coupled_laws.py",
     "tests/stepping/test_duhamel.py",
@@ -101,10 +102,10 @@ def selection(fault: Fault | None) -> list[str]:
     file = fault.file if fault else ""
     if file == "_basics/checks.py":
         return ["tests/test_door.py", *SELECTION]
-    independent = file.startswith(("stepping/", "guideways/sampled"))
+    independent = file.startswith(("stepping/", "guideways/sampled", "guideways/record", "guideways/files"))
     if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE
-    if file.startswith(("scenarios/", "guideways/files")):
+    if file.startswith("scenarios/"):
         return SCENARIOS + SELECTION
     if file.startswith(SHOWN):
         return REPORTS + SELECTION + REFERENCE

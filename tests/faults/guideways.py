@@ -20,7 +20,17 @@ FAULTS = [
         "(by_omega / slope).real",
         "-(by_omega / slope).real",
     ),
-    Fault("undamped limit missing", "guideways/waves.py", "<= ROOTS.real_within * rounding", "< 0.0 * rounding"),
+    Fault(
+        "undamped limit missing", "guideways/waves.py", "_squared(slope) <= uncertain *", "_squared(slope) < 0.0 *"
+    ),
+    Fault(
+        "conjugate pair on one side",
+        "guideways/waves.py",
+        "rounding_errors: float = 1e4",
+        "rounding_errors: float = 1e7",
+    ),
+    Fault("waves that meet are let through", "guideways/waves.py", "<= 2 * uncertain", "< 0.0 * uncertain"),
+    Fault("roots that nearly meet left unsettled", "guideways/waves.py", "if settled.all():", "if True:"),
     Fault("slope sign", "guideways/waves.py", "(1j * kappa) ** derivative", "(-1j * kappa) ** derivative"),
     Fault("decay along the road", "guideways/waves.py", "np.exp(1j * kappa[", "np.exp(-1j * kappa["),
     Fault("sleeper inertia sign", "guideways/foundations.py", "{(0, 2): self.mass}", "{(0, 2): -self.mass}"),
@@ -38,6 +48,17 @@ FAULTS = [
     Fault("tension for compression", "guideways/tensioned.py", "{(2, 0): self.force}", "{(2, 0): -self.force}"),
     Fault("buckled track let in", "guideways/critical.py", "if not positive.size:", "if True:"),
     Fault("shortest wave that buckles", "guideways/critical.py", "among)).argmin()", "among)).argmax()"),
+    Fault(
+        "front of the waves forgotten",
+        "guideways/critical.py",
+        "[*dips, *waves.fronts, slowest.min()]",
+        "[*dips, slowest.min()]",
+    ),
+    Fault(
+        "waves of six decades", "guideways/critical.py", "first, last = _corners(table)", "first, last = 1.0, 1.0"
+    ),
+    Fault("climb past a root", "guideways/critical.py", "value * rest[:, 0] > 0", "value == value"),
+    Fault("mass below on a shear layer", "guideways/track.py", "if massless and (", "if ("),
     Fault("compressed or not", "guideways/critical.py", "rise * below < above * fall", "False"),
     Fault("layers side by side", "guideways/foundations.py", ".in_series(layer)", " + layer"),
     # What whoever writes a guideway need not write.
@@ -52,7 +73,33 @@ FAULTS = [
         "else (self.source_across, self.across)",
     ),
     # Steady travel, footprint, prescribed forces.
-    Fault("first sample counts fully", "guideways/sampled.py", "samples[0] *= 0.5", "samples[0] *= 1.0"),
+    Fault("root of time for a straight line", "guideways/record.py", "= (1.0, 0.5)", "= (1.0,)"),
+    Fault("series of the onset cut short", "guideways/record.py", "series: int = 70", "series: int = 2"),
+    Fault(
+        "onset by trapezoids",
+        "guideways/sampled.py",
+        "self.samples, stepped=self.stepped)",
+        "self.samples, stepped=True)",
+    ),
+    Fault(
+        "what was stepped as if exact",
+        "guideways/sampled.py",
+        "self.samples, stepped=self.stepped)",
+        "self.samples, stepped=False)",
+    ),
+    Fault("cut off without a word", "guideways/sampled.py", "(*self._cut_off(largest), *self", "(*self"),
+    Fault("long step without a word", "guideways/sampled.py", "*self._coarse(largest), ", ""),
+    Fault(
+        "remarks forgotten", "guideways/sampled.py", "*self._coarse(largest), *remarks)", "*self._coarse(largest))"
+    ),
+    Fault(
+        "tail of the last sample alone",
+        "guideways/record.py",
+        "rates = np.log(waves) / step",
+        "rates = np.log(waves) / time_step",
+    ),
+    Fault("deaf to the guideway", "guideways/guideway.py", 'getattr(guideway, "findings", ())', "()"),
+    Fault("file without remarks", "guideways/files.py", "for remark in guideway.remarks]", "for remark in ()]"),
     Fault("transform of the other sign", "guideways/sampled.py", "phase = -1j", "phase = 1j"),
     Fault("nothing is beyond Nyquist", "guideways/sampled.py", "<= np.pi / self.time_step", "<= np.inf"),
 ]

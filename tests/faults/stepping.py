@@ -263,6 +263,16 @@ FAULTS = [
         "state.guideway[2] = march",
     ),
     Fault("one road for all", "stepping/impulse.py", "np.mean(records, axis=0)", "records[0]"),
+    Fault(
+        "onset of the convolution forgotten",
+        "stepping/duhamel.py",
+        "guideway.onset.moment(0) - rising",
+        "0.0 * rising",
+    ),
+    Fault("kinks of the hats forgotten", "stepping/duhamel.py", "/ (12 * count)", "/ (1e9 * count)"),
+    Fault("struck road as if sampled", "stepping/impulse.py", "stepped=True", "stepped=False"),
+    Fault("no limit to the estimate", "stepping/impulse.py", "if back[worst] < VALIDITY.untold", "if True"),
+    Fault("findings of the road left out", "stepping/duhamel.py", "*road.findings],", "],"),
     Fault("reflections unseen", "stepping/impulse.py", "share ** (2 * len(guideways))", "0 * share"),
     Fault(
         "wrong half of the first hat",
@@ -270,7 +280,12 @@ FAULTS = [
         "whole, _, first = weights",
         "whole, first, _ = weights",
     ),
-    Fault("hat leaning the other way", "stepping/duhamel.py", "(trapezoid * (1 - share))", "(trapezoid * share)"),
+    Fault(
+        "hat leaning the other way",
+        "stepping/duhamel.py",
+        "(trapezoid * (1 - share) + kinks)",
+        "(trapezoid * share + kinks)",
+    ),
     Fault("plain: backward differences", "stepping/duhamel.py", "(1.5, -2.0, 0.5)", "(1.5, -2.0, -0.5)"),
     Fault(
         "backward differences",

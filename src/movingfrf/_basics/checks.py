@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import difflib
 import math
+import sys
+import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from numbers import Real
+from types import FrameType
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -56,6 +59,27 @@ class SolveError(RuntimeError):
 
 class ValidityWarning(UserWarning):
     """The answer lies outside the assumptions it was computed under."""
+
+
+class Finding(NamedTuple):
+    """One thing to know about a result, or about what it is computed from."""
+
+    code: str
+    message: str
+    # How far an output may be off, relative to the largest value of its channel; None where nothing is off by that.
+    figure: float | None = None
+
+
+def warned(found: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Warn of every finding, at the line that called the package, and return them all."""
+    level = 1
+    frame: FrameType | None = sys._getframe()
+    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "movingfrf":
+        level, frame = level + 1, frame.f_back
+    found = tuple(found)
+    for finding in found:
+        warnings.warn(finding.message, ValidityWarning, stacklevel=level)
+    return found
 
 
 def shown(value: object) -> str:

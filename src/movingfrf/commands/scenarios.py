@@ -6,7 +6,7 @@ import sys
 import warnings
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
@@ -20,6 +20,9 @@ from movingfrf.commands.console import (
     print_result,
     print_table,
 )
+
+if TYPE_CHECKING:
+    from movingfrf.scenarios.scenario import Scenario
 
 
 def new(file: Path | None = None, /, *, loads: bool = False, force: bool = False) -> None:
@@ -46,6 +49,15 @@ def new(file: Path | None = None, /, *, loads: bool = False, force: bool = False
     plain_console().print(f"wrote {file}", soft_wrap=True)
 
 
+def _read(file: Path) -> Scenario:
+    """Read a scenario; what its guideway says of itself is printed with the results, not warned of as well."""
+    from movingfrf.scenarios.reading import read_scenario
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ValidityWarning)
+        return read_scenario(file)
+
+
 def check(file: Path, /) -> None:
     """Check a scenario and say what it describes, without solving it.
 
@@ -56,9 +68,8 @@ def check(file: Path, /) -> None:
     """
     from movingfrf._basics.checks import SolveError
     from movingfrf.scenarios.description import described
-    from movingfrf.scenarios.reading import read_scenario
 
-    found = described(read_scenario(file))
+    found = described(_read(file))
     console = plain_console()
     for heading, lines in found.sections:
         print_table(console, listing(heading, lines))
@@ -150,11 +161,10 @@ def run(
         from movingfrf.reports.result import render
         from movingfrf.reports.ways import way
         from movingfrf.results.files import replacing, save, summary_as_json
-        from movingfrf.scenarios.reading import read_scenario
         from movingfrf.scenarios.scenario import Drive
 
         stages.report("scenario", 0.0)
-        scenario = read_scenario(file)
+        scenario = _read(file)
         folder = output if output is not None else file.parent / "out" / scenario.name
         with replacing(folder) as temporary, warnings.catch_warnings():
             # Findings are printed with the results; no need to warn of them as well.
@@ -210,11 +220,10 @@ def random(
         from movingfrf.response.random import random_response
         from movingfrf.results.files import replacing, save, summary_as_json
         from movingfrf.results.findings import one_path, with_more
-        from movingfrf.scenarios.reading import read_scenario
         from movingfrf.scenarios.scenario import Drive
         from movingfrf.scenarios.stepped import require_endless
 
-        scenario = read_scenario(file)
+        scenario = _read(file)
         drive = scenario.case
         if not isinstance(drive, Drive):
             raise ValueError(f"{file}: prescribed loads have no random road; a vehicle and a spectrum are needed")

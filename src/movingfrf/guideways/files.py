@@ -14,18 +14,18 @@ from movingfrf._basics.checks import ParameterError, checking
 from movingfrf.guideways.sampled import SampledGuideway
 
 # A file holds what a `SampledGuideway` is made of, under the same names; these are numbers, the others arrays.
-NUMBERS = ("time_step", "speed", "critical_speed")
+NUMBERS = ("time_step", "speed", "critical_speed", "stepped")
 
 # Ten thousand samples at all 4,032 offsets of a train take 300 MiB [a convention].
-RECORD = Content(what="a sampled guideway", largest=2**30)
+RECORD = Content(what="a sampled guideway", largest=2**30, texts=("remarks",))
 
 
 def read_sampled_guideway(file: str | Path) -> SampledGuideway:
     """Read a guideway that is known by its moving impulse response: `.npz` (NumPy) or `.mat` (MATLAB).
 
     The file holds the arrays `response` (time, offset) [m/(N s)] and `offsets` [m], the numbers `time_step` [s] and
-    `speed` [m/s], and where wanted `across` and `source_across` [m] and `critical_speed` [m/s], as for
-    `SampledGuideway`.
+    `speed` [m/s], and where wanted `across` and `source_across` [m] and `critical_speed` [m/s],
+    `stepped` (1 if it is so) and `remarks` (texts, "code: message"), as for `SampledGuideway`.
 
     Parameters
     ----------
@@ -65,6 +65,8 @@ def write_sampled_guideway(guideway: SampledGuideway, file: str | Path) -> None:
         If the ending is another one.
     """
     arrays = {one.name: getattr(guideway, one.name) for one in fields(guideway) if one.init}
+    arrays["stepped"] = 1.0 if guideway.stepped else None
+    arrays["remarks"] = [": ".join(remark) for remark in guideway.remarks] or None
     known = {name: np.asarray(array) for name, array in arrays.items() if array is not None}
     write_arrays(file, known, RECORD.what)
 
@@ -82,8 +84,12 @@ def _arguments(found: Mapping[str, Any]) -> dict[str, Any]:
         for name in NUMBERS:
             if name in found and np.size(found[name]) != 1:
                 check.refuse(name, f"must be one number, got {np.size(found[name])}")
+        remarks = [str(remark).partition(": ")[::2] for remark in np.ravel(found.get("remarks", []))]
+        if not all(code and message for code, message in remarks):
+            check.refuse("remarks", 'must be texts of the form "code: message"')
     flat = {name: np.ravel(array) for name, array in found.items()}
-    return {
+    shaped = {
         name: array if name == "response" else flat[name][0].item() if name in NUMBERS else flat[name]
         for name, array in found.items()
     }
+    return shaped | {"remarks": remarks, "stepped": bool(shaped.get("stepped", False))}

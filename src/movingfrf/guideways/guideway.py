@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.checks import checking, uncovered
+from movingfrf._basics.checks import Finding, checking, uncovered
 
 
 class Guideway(Protocol):
@@ -25,6 +25,9 @@ class Guideway(Protocol):
     4. *Causality*: nothing moves before the load arrives.
     5. *Dissipation*: in the fixed frame Im C(κ, Ω) · sign Ω ≤ 0. (Im G itself may turn positive above the
        critical speed: the motion of the load then feeds the vibration.)
+
+    A guideway that knows of its own limits says so in `findings`, pairs of a code and a message: every result that
+    is computed from it carries them. Without that attribute there are none.
     """
 
     @property
@@ -200,6 +203,22 @@ def require_guideway(guideway: object) -> None:
         raise ValueError(
             f"guideway must have a critical_speed [m/s], which may be inf, got a {type(guideway).__name__} without"
         )
+
+
+def findings_of(guideway: Guideway) -> tuple[Finding, ...]:
+    """Ask a guideway what it knows of its own limits.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The guideway.
+
+    Returns
+    -------
+    tuple of Finding
+        Its `findings`; none by default.
+    """
+    return tuple(Finding(*finding) for finding in getattr(guideway, "findings", ()))
 
 
 def told(guideway: Guideway) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from hashlib import blake2b
 
@@ -9,30 +10,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
-from movingfrf._basics.checks import checking
+from movingfrf._basics.checks import Finding, checking, shown, warned
+from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.smooth import smooth_step
 from movingfrf.guideways.guideway import Asked, at_offsets
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImpulseRecord:
-    """What tunes how a recorded impulse response is read; in brackets, between what each number is safe."""
-
-    # Two speeds that differ by less than this share, of 1 m/s at least, are one.
-    same_speed: float = 1e-9  # [1e-12 to 1e-6]
-    # Two offsets that differ by less are one; those of a vehicle are rounded to the nanometre.
-    same_place: float = 1e-6  # [m; 1e-8 to 1e-4]
-    # Samples that share one exponential factor in the transform.
-    block: int = 256  # [16 to 1024: time and memory only]
-    # Frequencies transformed at a time: their factors stay within the processor's cache.
-    together: int = 256  # [16 to 4096: time and memory only]
-
-
-RECORD = ImpulseRecord()
+from movingfrf.guideways.record import RECORD, Onset, onset_of, tail_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SampledGuideway:
+class SampledGuideway(Remembering):
     """A guideway given by samples of its moving impulse response, at one speed and for some offsets.
+
+    From its first sample, a jump where that is not zero, the response is taken to set in like √t or like t, as the
+    next samples show; or with the jump alone, if they show neither.
 
     Parameters
     ----------
@@ -50,11 +40,22 @@ class SampledGuideway:
         left of the centre line [m]. None: places across make no difference.
     critical_speed : float
         Critical speed of the guideway [m/s], where it is known; inf otherwise.
+    stepped : bool
+        Whether the samples were stepped through time, as those of a struck road: then their sum by the trapezoidal
+        rule is exact. Others are taken to lie on the response, which sets in between them.
+    remarks : iterable of (str, str), optional
+        What else is to be known of the record, code and message; results carry it among their findings.
 
     Raises
     ------
     ValueError
         If shapes disagree or a value is impossible.
+
+    Warns
+    -----
+    ValidityWarning
+        If the response has not died away at the end of the record, the step is too long for what it shows, or for
+        each remark.
 
     Examples
     --------
@@ -74,6 +75,8 @@ class SampledGuideway:
     across: ArrayLike | None = None
     source_across: ArrayLike | None = None
     critical_speed: float = np.inf
+    stepped: bool = False
+    remarks: Iterable[tuple[str, str]] = ()
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -90,6 +93,11 @@ class SampledGuideway:
             check.positive_or_infinite("critical_speed", self.critical_speed, "m/s")
             if not check.faults and (len(response) < 2 or not offsets.size):
                 check.refuse("response", "must hold at least two samples and one offset")
+            remarks = tuple(tuple(remark) for remark in self.remarks)
+            if not all(len(remark) == 2 and all(isinstance(part, str) for part in remark) for remark in remarks):
+                check.refuse("remarks", f"must be pairs of a code and a message, got {shown(self.remarks)}")
+        object.__setattr__(self, "remarks", remarks)
+        warned(self.findings)
 
     def __repr__(self) -> str:
         """Say which record it is: its size, and a sum over its bytes in place of them."""
@@ -105,6 +113,66 @@ class SampledGuideway:
     def samples(self) -> FloatArray:
         """The moving impulse response, shape (time, offset) [m/(N s)]."""
         return np.asarray(self.response)
+
+    @property
+    @remembered
+    def onset(self) -> Onset:
+        """How the response begins, between its first samples."""
+        return onset_of(self.samples, stepped=self.stepped)
+
+    @property
+    @remembered
+    def findings(self) -> tuple[Finding, ...]:
+        """What is to be known of whatever is computed from the record."""
+        largest = self.time_step * float(np.abs(np.fft.rfft(self.samples, axis=0)).max())
+        remarks = tuple(Finding(*remark) for remark in self.remarks)
+        return remarks if not largest else (*self._cut_off(largest), *self._coarse(largest), *remarks)
+
+    def _cut_off(self, largest: float) -> list[Finding]:
+        """Estimate what is left out of a record that ends too early, beside the largest moving FRF [m/N]."""
+        tail, known = tail_of(self.samples, self.time_step), self.time_step * self.samples.sum(axis=0)
+        worst = int(tail.largest.argmax())
+        if tail.largest[worst] <= RECORD.worth_a_word * largest:
+            return []
+        still = np.abs(tail.at_rest).max() / np.abs(known + tail.at_rest).max()
+        return [
+            Finding(
+                "record_cut_off",
+                "the moving impulse response has not died away: after "
+                f"{self.time_step * (len(self.samples) - 1):.4g} s about {_share(still)} of the static deflection "
+                f"is missing, and at {tail.frequency[worst]:.3g} Hz {_share(tail.largest[worst] / largest)} of the "
+                "largest moving FRF; a longer record is needed, on a longer road, or with more damping",
+            )
+        ]
+
+    def _coarse(self, largest: float) -> list[Finding]:
+        """Estimate what is wrong in a record whose step is too long, beside the largest moving FRF [m/N]."""
+        if self.stepped:
+            return []
+        doubt = self.onset.doubt
+        recognised = ~np.isnan(doubt)
+        # A beginning that is recognised has been seen to, what sets in later has not; the end is no step.
+        rising = smooth_step(np.arange(len(self.samples)) / RECORD.later)[:, None]
+        spectrum = np.abs(np.fft.rfft(np.where(recognised, rising, 1.0) * rising[::-1] * self.samples, axis=0))
+        half, quarter = len(spectrum) // 2, len(spectrum) // 4
+        upper, lower = (
+            np.sqrt(np.square(part).sum(axis=0) / max(len(part), 1))
+            for part in (spectrum[half:], spectrum[quarter:half])
+        )
+        # What folds back to low frequencies comes from the sampling frequency, above the middle of the last octave.
+        ratio = np.minimum(np.divide(upper, lower, out=np.ones_like(upper), where=lower > 0), 1.0)
+        folded = upper * ratio**RECORD.octaves
+        share = self.time_step * float((np.where(recognised, doubt, 0.0) + folded).max()) / largest
+        if share <= RECORD.worth_a_word:
+            return []
+        return [
+            Finding(
+                "record_step",
+                f"a step of {self.time_step:g} s is long for what the impulse response shows: the moving FRF may "
+                f"be off by {_share(share)} of its largest value, and nothing is known of it beyond "
+                f"{0.5 / self.time_step:.4g} Hz; samples closer together would tell more",
+            )
+        ]
 
     def columns(self, ahead: ArrayLike, across: ArrayLike = 0.0, source_across: ArrayLike = 0.0) -> IntArray:
         """Find the columns of `response` that belong to some offsets.
@@ -223,13 +291,12 @@ class SampledGuideway:
         return frf
 
     def _transformed(self, omega: ComplexArray, columns: IntArray) -> ComplexArray:
-        """Σ g(k Δt) e^{−iω k Δt} Δt, the first sample by half, in blocks of samples that share a factor."""
-        samples = self.samples[:, columns].copy()
-        samples[0] *= 0.5
+        """Σ_{k≥1} g(kΔt) e^{−iωkΔt} Δt, in blocks of samples that share a factor, and what the onset adds."""
+        samples = self.samples[:, columns]
         size = RECORD.block
         blocks = -(-len(samples) // size)
         padded = np.zeros((blocks * size, columns.size))
-        padded[: len(samples)] = samples
+        padded[1 : len(samples)] = samples[1:]
         by_block = padded.reshape(blocks, size, -1).swapaxes(0, 1).reshape(size, -1)
         phase = -1j * self.time_step * omega[:, None]
         within, between = np.exp(phase * np.arange(size)), np.exp(phase * (size * np.arange(blocks)))
@@ -237,5 +304,11 @@ class SampledGuideway:
         inner: ComplexArray = np.empty((omega.size, by_block.shape[1]), complex)
         inner.real, inner.imag = within.real @ by_block, within.imag @ by_block
         frf: ComplexArray = np.einsum("wb,wbc->wc", between, inner.reshape(omega.size, blocks, -1))
+        frf += self.onset.transform(1j * self.time_step * omega)[:, columns]
         frf *= self.time_step
         return frf
+
+
+def _share(value: float) -> str:
+    """Write a share; past its whole an estimate only says that there is no telling."""
+    return f"{value:.1e}" if value < 0.1 else f"{value:.0%}" if value < 1 else "all"

@@ -15,6 +15,7 @@ from movingfrf.guideways.critical import (
     buckles_at,
     compressed,
     first_stationary_velocity,
+    least_phase_velocity,
     speed_of_greatest_deflection,
 )
 from movingfrf.guideways.foundations import Foundation
@@ -47,18 +48,21 @@ class Track(Remembering):
         """Critical speed [m/s]; inf if there is none. Computed when first asked for.
 
         On a massless foundation the minimum phase velocity, damping ignored: a load that travels with it keeps
-        up with its own waves. A mass in the foundation lets waves of ever shorter length travel ever slower;
-        then it is the speed of the greatest steady deflection anywhere along the track, with the track's own
-        damping, up to the first stationary phase velocity. Where damping is so strong that the deflection is
-        greatest at rest there is none; but if the beam is compressed, it is the first stationary phase velocity:
-        compression slows that wave down, to a standstill where the beam buckles, and damping does not stop it.
+        up with its own waves. Where ever shorter waves travel ever slower it is that of their front. A mass in the
+        foundation lets short waves travel as slowly as its own shear layer does, or not at all; then it is the
+        speed of the greatest steady deflection anywhere along the track, with the track's own damping, up to the
+        first stationary phase velocity. Where damping is so strong that the deflection is greatest at rest there
+        is none; but if the beam is compressed, it is the first stationary phase velocity: compression slows that
+        wave down, to a standstill where the beam buckles, and damping does not stop it.
         """
         lossless = self.stiffness(damped=False)
-        velocity = first_stationary_velocity(lossless)
-        if not velocity.unbounded:
-            return velocity.value
-        speed = speed_of_greatest_deflection(self.stiffness(), velocity.value)
-        return velocity.value if np.isinf(speed) and compressed(lossless) else speed
+        held = self.foundation.foundation_stiffness(damped=False)
+        massless = not any(table[:, 1:].any() for table in (held.above, held.below))
+        if massless and (least := least_phase_velocity(lossless)) > 0:
+            return least
+        limit = first_stationary_velocity(lossless)
+        speed = speed_of_greatest_deflection(self.stiffness(), limit)
+        return limit if np.isinf(speed) and compressed(lossless) else speed
 
     def moving_frf(
         self,

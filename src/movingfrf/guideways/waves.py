@@ -29,18 +29,16 @@ class RootSearch:
     # Below this speed the moving frame differs from the fixed one by rounding errors, while the roots that run away
     # to infinity as v → 0 (one per κⁿ that v alone keeps alive) begin to cost digits.
     at_rest: float = 1e-13  # [m/s; 1e-15 to 1e-12]
-    # A root within so many rounding errors of the real axis is taken as real and classified by the direction in
-    # which damping would push it.
-    real_within: float = 1e6  # [1e2 to 1e8]
-    # Two real roots within so many rounding errors of each other pinch the contour between them: the response is
-    # infinite.
-    merged_within: float = 1e4  # [1e2 to 1e6]
-    # A root whose imaginary part is more than this share of its magnitude needs no such care: not even a fourfold
-    # root is uncertain by as much as the fourth root of the rounding error, 1.2e-4.
-    clearly_off: float = 1e-3  # [2e-4 to 1]
+    # What so many rounding errors of the dynamic stiffness could bring about counts as there: a root that they
+    # could put on the real axis is real and belongs where damping would push it; between two that they could make
+    # one the contour is pinched, and the response infinite. What is let through is right to about the inverse.
+    rounding_errors: float = 1e4  # [1e3 to 1e6]
     # Newton steps on a root: the last one moves it by less than this share, and squares the error.
     most_steps: int = 4  # [2 to 20]
     converged: float = 1e-9  # [1e-16 to 1e-8]
+    # Steps of all roots together, where some nearly meet.
+    most_steps_together: int = 40  # [20 to 200]
+    askew: complex = 6e-7 + 8e-7j  # how far they are moved first, off every symmetry [1e-8 to 1e-5 in magnitude]
     # Roots of two kinds that differ by this factor are computed apart, to within about its inverse.
     far: float = 1e4  # [1e2 to 1e6]
 
@@ -171,14 +169,34 @@ def wavenumbers(coefficients: ComplexArray) -> ComplexArray:
     ndarray, shape (degree, frequency)
         The roots, in no particular order.
     """
-    roots = _first_guess(coefficients)
+    roots = guess = _first_guess(coefficients)
     slope = slopes(coefficients)
     for _ in range(ROOTS.most_steps):
         with np.errstate(all="ignore"):
             step = evaluated(coefficients, roots) / evaluated(slope, roots)
             # At a multiple root the slope vanishes and so does the need to move.
             step = np.where(np.isfinite(step), step, 0.0)
-        roots -= step
+        roots = roots - step
+        settled = _squared(step) <= ROOTS.converged**2 * _squared(roots)
+        if settled.all():
+            return roots
+    far = np.flatnonzero(~settled.all(axis=0))
+    roots[:, far] = _all_at_once(coefficients[:, far], guess[:, far])
+    return roots
+
+
+def _all_at_once(coefficients: ComplexArray, roots: ComplexArray) -> ComplexArray:
+    """Roots that nearly meet, each pushed away by the others (Aberth and Ehrlich), shape (degree, frequency)."""
+    # From a conjugate pair no two real roots are ever reached, and from one place no two at all.
+    roots = roots * (1 + ROOTS.askew * np.arange(len(roots))[:, None])
+    for _ in range(ROOTS.most_steps_together):
+        with np.errstate(all="ignore"):
+            newton = evaluated(coefficients, roots) / evaluated(slopes(coefficients), roots)
+            gaps = roots[:, None] - roots
+            gaps[np.arange(len(roots)), np.arange(len(roots))] = np.inf
+            step = newton / (1 - newton * (1 / gaps).sum(axis=1))
+            step = np.where(np.isfinite(step), step, 0.0)
+        roots = roots - step
         if (_squared(step) <= ROOTS.converged**2 * _squared(roots)).all():
             break
     return roots
@@ -313,15 +331,18 @@ def _sides(
     """Tell on which side of the real axis each root lies (by sign), and at which frequencies two sides meet."""
     side = kappa.imag
     infinite: BoolArray = np.zeros(omega.size, bool)
-    # Not even a fourfold root is uncertain by as much as this, so most guideways need no closer look.
-    if (side * side > ROOTS.clearly_off**2 * _squared(kappa)).all():
+    size = evaluated(_expanded(np.abs(table), np.abs(omega), abs(speed)), np.abs(kappa))
+    uncertain = ROOTS.rounding_errors * np.finfo(float).eps * size
+    # To first order D is D′ times the distance from a root.
+    doubtful = side * side * _squared(slope) <= uncertain * uncertain
+    if not doubtful.any():
         return side, infinite
-    rounding = np.finfo(float).eps * evaluated(_expanded(np.abs(table), np.abs(omega), abs(speed)), np.abs(kappa))
-    doubtful = np.abs(side) * np.abs(slope) <= ROOTS.real_within * rounding
+    # To second order D + D′x + D″x²/2 has a double root once D changes by D′²/2D″. For a pair κ ± iy that is
+    # y|D′|/2: neither of a pair is ever taken as real.
+    bend = evaluated(slopes(slopes(in_moving_frame(table, speed, omega))), kappa)
+    infinite |= (doubtful & (_squared(slope) <= 2 * uncertain * np.abs(bend))).any(axis=0)
     # Im κ(ω − i0⁺) has the sign of Re(∂D/∂ω ÷ ∂D/∂κ).
     by_omega = evaluated(in_moving_frame(_by_omega(table), speed, omega), kappa)
-    bend = evaluated(slopes(slopes(in_moving_frame(table, speed, omega))), kappa)
-    infinite |= (doubtful & (_squared(slope) <= ROOTS.merged_within * rounding * np.abs(bend))).any(axis=0)
     return np.where(doubtful, (by_omega / slope).real, side), infinite
 
 

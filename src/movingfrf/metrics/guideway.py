@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
 from movingfrf._basics.checks import checking, uncovered
-from movingfrf.guideways.guideway import Guideway, require_guideway, told
+from movingfrf.guideways.guideway import Guideway, findings_of, require_guideway, told
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import in_moving_frame, wavenumbers
 from movingfrf.results.labels import attributes, labelled
@@ -274,5 +274,6 @@ def _response(guideway: Guideway, frequency: ArrayLike, ahead: ArrayLike, speed:
         form=form,
         speed=speed,
         guideway=told(guideway),
+        findings=findings_of(guideway),
     )
     return labelled({"frequency": f, "omega": omega, "ahead": at, form: values}, settings)

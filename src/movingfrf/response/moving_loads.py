@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 import movingfrf.results.findings as find
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.guideways.guideway import Guideway, require_guideway, told
+from movingfrf.guideways.guideway import Guideway, findings_of, require_guideway, told
 from movingfrf.response.line import Line, require_record
 from movingfrf.response.sampling import excited
 from movingfrf.response.solve import solve
@@ -108,6 +108,7 @@ def moving_loads(
     critical_speed = float(guideway.critical_speed)
     found = [
         *find.near_critical(abs(speed), critical_speed),
+        *findings_of(guideway),
         *find.not_decayed("deflection", response.wrapped, response.values),
         *find.beyond_truncation(truncation or 0.0, error),
     ]

@@ -8,6 +8,7 @@ import numpy as np
 
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray
+from movingfrf.guideways.guideway import findings_of
 from movingfrf.response.batches import BATCH, unthreaded
 from movingfrf.response.stability import along_the_axis, require_stable, stretches
 from movingfrf.response.system import System, Tables
@@ -67,7 +68,7 @@ def survey(system: System) -> Survey:
         If vehicle and guideway are unstable together.
     """
     critical_speed = float(system.guideway.critical_speed)
-    findings = find.near_critical(system.speed, critical_speed)
+    findings = [*find.near_critical(system.speed, critical_speed), *findings_of(system.guideway)]
     batch = BATCH.frequencies(system.entries)
     path = stretches(along_the_axis(system.vehicle, system.speed), batch)
     with unthreaded():

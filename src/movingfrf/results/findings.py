@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import json
-import sys
-import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from types import FrameType
-from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import ValidityWarning
+from movingfrf._basics.checks import Finding as Finding
+from movingfrf._basics.checks import warned
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,15 +28,6 @@ class Thresholds:
 
 
 THRESHOLDS = Thresholds()
-
-
-class Finding(NamedTuple):
-    """One thing to know about a result."""
-
-    code: str
-    message: str
-    # How far an output may be off, relative to the largest value of its channel; None where nothing is off by that.
-    figure: float | None = None
 
 
 def contact_lost(total_force: FloatArray, time_step: float) -> list[Finding]:
@@ -188,16 +176,14 @@ def grade_taken(grade: float) -> list[Finding]:
 
 def with_more(findings: str, more: Iterable[Finding]) -> str:
     """Add findings to those of a JSON text."""
-    return json.dumps([*json.loads(findings), *(finding._asdict() for finding in more)])
+    return json.dumps([*json.loads(findings), *map(_plain, more)])
 
 
 def announced(found: Iterable[Finding]) -> str:
     """Warn of every finding, at the line that called the package, and return them all as JSON text."""
-    level = 1
-    frame: FrameType | None = sys._getframe()
-    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "movingfrf":
-        level, frame = level + 1, frame.f_back
-    found = list(found)
-    for finding in found:
-        warnings.warn(finding.message, ValidityWarning, stacklevel=level)
-    return json.dumps([{key: value for key, value in f._asdict().items() if value is not None} for f in found])
+    return json.dumps([_plain(finding) for finding in warned(found)])
+
+
+def _plain(finding: Finding) -> dict[str, str | float]:
+    """Leave out a figure that there is not."""
+    return {key: value for key, value in finding._asdict().items() if value is not None}

@@ -11,6 +11,7 @@ from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.welch import welch
+from movingfrf.guideways.guideway import findings_of
 from movingfrf.response.line import TRANSFORM, Line
 from movingfrf.response.simulation import line_of
 from movingfrf.response.survey import survey
@@ -77,7 +78,8 @@ def described(scenario: Scenario) -> Description:
     sections: list[Section] = [("Guideway", _guideway(scenario))]
     endless, speed, refusal, found = scenario.endless, scenario.journey.speed, "", []
     if endless is not None:
-        found += [finding.message for finding in near_critical(speed, float(endless.critical_speed))]
+        known = [*near_critical(speed, float(endless.critical_speed)), *findings_of(endless)]
+        found += [finding.message for finding in known]
     match scenario.case:
         case Drive(vehicle=vehicle, road=road):
             contacts: Section = ("Contacts at rest", _contacts(vehicle, vehicle.static_loads))

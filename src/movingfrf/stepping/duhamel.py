@@ -206,6 +206,7 @@ def convolved(
         findings=[
             *find.contact_lost(force + load, time_step),
             *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
+            *road.findings,
         ],
     )
     return labelled(values, settings)
@@ -292,6 +293,7 @@ def duhamel_loads(
         speed=speed,
         time_step=time_step,
         critical_speed=road.critical_speed,
+        findings=road.findings,
     )
     return labelled(values, settings)
 
@@ -329,14 +331,23 @@ def weights(guideway: SampledGuideway, time_step: float) -> tuple[FloatArray, Fl
     steps = -(-needed // count) + 1
     padded = np.zeros((steps * count + 1, samples.shape[1]))
     kept = min(len(samples), len(padded))
-    padded[:kept] = samples[:kept]
+    padded[1:kept] = samples[1:kept]
     share = np.arange(count + 1) / count
     trapezoid = np.full(count + 1, guideway.time_step)
     trapezoid[[0, -1]] *= 0.5
     pieces = np.lib.stride_tricks.sliding_window_view(padded, count + 1, axis=0)[::count]
     later, earlier = np.zeros((2, steps + 1, samples.shape[1]))
-    later[:-1] = pieces @ (trapezoid * (1 - share))
-    earlier[1:] = pieces @ (trapezoid * share)
+    # Hats have kinks where halves meet: the trapezoidal rule errs there by Δt²/12 times the change of slope, unless
+    # it is the samples' own.
+    kinks = np.zeros(count + 1)
+    if not guideway.stepped:
+        kinks[[0, -1]] = np.array([-1.0, 1.0]) * guideway.time_step / (12 * count)
+    later[:-1] = pieces @ (trapezoid * (1 - share) + kinks)
+    earlier[1:] = pieces @ (trapezoid * share - kinks)
+    # How the response begins, under halves that fall from 1 and rise from 0.
+    rising = guideway.time_step * guideway.onset.moment(1) / count
+    later[0] += guideway.time_step * guideway.onset.moment(0) - rising
+    earlier[1] += rising
     return later + earlier, later, earlier
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray, require_memory
-from movingfrf._basics.checks import ValidityWarning, checking
+from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import Track
@@ -39,13 +38,13 @@ class Ringing:
 class Validity:
     """What about a response is worth a warning; in brackets, between what each number is safe."""
 
-    # What is left of the response at its end, and of a wave that comes back from the ends of the guideway, relative
-    # to the largest; and the error of the step at the highest frequency of the band, (ω Δt)²/12.
-    undecayed: float = 1e-3  # [a convention]
+    # What is left of a wave that comes back from the ends of the guideway, relative to the largest moving FRF, and
+    # from where on that is no estimate any more; and the error of the step at the highest frequency of the band,
+    # (ω Δt)²/12.
     reflected: float = 1e-3  # [a convention]
+    untold: float = 0.3  # [0.1 to 1]
     stretched: float = 1e-2  # [a convention]
-    # Share of a record that counts as its end, and of the guideway that counts as each of its ends.
-    late: float = 0.05  # [0.02 to 0.1]
+    # Share of the guideway that counts as each of its ends.
     outer: float = 0.1  # [0.05 to 0.1]
     # Frequencies at which reflections are estimated, and points at each end of the guideway.
     frequencies: int = 40  # [20 to 200]
@@ -220,13 +219,6 @@ def moving_impulse_response(
     response = np.empty((steps + 1, at.size))
     for source, piece in pieces.items():
         response[:, sources == source] = piece
-    found = [
-        *_undecayed(response, steps * time_step),
-        *_stretched(band, time_step),
-        *_reflected(several, row, time_step, strike, steps, band, compiled, progress),
-    ]
-    for message in found:
-        warnings.warn(message, ValidityWarning, stacklevel=2)
     return SampledGuideway(
         response=response,
         time_step=time_step,
@@ -235,6 +227,11 @@ def moving_impulse_response(
         across=beside if wide else None,
         source_across=sources if wide else None,
         critical_speed=critical_speed,
+        stepped=True,
+        remarks=[
+            *_stretched(band, time_step),
+            *_reflected(several, row, time_step, strike, steps, band, compiled, progress),
+        ],
     )
 
 
@@ -367,24 +364,16 @@ def _ringing(
     return np.concatenate(pieces)
 
 
-def _undecayed(response: FloatArray, length: float) -> list[str]:
-    size = np.abs(response).max()
-    left = float(np.abs(response[-max(1, int(VALIDITY.late * len(response))) :]).max() / size) if size else 0.0
-    if left <= VALIDITY.undecayed:
-        return []
-    return [
-        f"the moving impulse response has not died away: after {length:.4g} s {left:.1e} of its largest value is "
-        "left; a longer road, or more damping, would let it"
-    ]
-
-
-def _stretched(band: float, time_step: float) -> list[str]:
+def _stretched(band: float, time_step: float) -> list[tuple[str, str]]:
     error = (2 * np.pi * band * time_step) ** 2 / 12
     if error <= VALIDITY.stretched:
         return []
     return [
-        f"the time step of {time_step:g} s is long for {band:g} Hz: vibrations there are slowed by {error:.1%}; "
-        f"{np.sqrt(12 * VALIDITY.stretched) / (2 * np.pi * band):.2g} s would do"
+        (
+            "struck_step",
+            f"the time step of {time_step:g} s is long for {band:g} Hz: vibrations there are slowed by "
+            f"{error:.1%}; {np.sqrt(12 * VALIDITY.stretched) / (2 * np.pi * band):.2g} s would do",
+        )
     ]
 
 
@@ -397,7 +386,7 @@ def _reflected(
     band: float,
     compiled: bool | None,
     progress: Progress,
-) -> list[str]:
+) -> list[tuple[str, str]]:
     """Estimate what comes back from the ends.
 
     A wave that is e times as high at an end as where it began is e² times as high when it is back, e⁴ times when
@@ -415,17 +404,22 @@ def _reflected(
     # On the centre line, where no roll adds to what the blow itself brings about.
     blow = Blow(strike, 0.0, 0.0, points, 0.0)
     records = _ringing(guideway, scheme, time_step, blow, steps, compiled, progress)
-    numbers = np.arange(float(points.size))
     omega = 2 * np.pi * np.linspace(0.0, band, VALIDITY.frequencies)
-    at_rest = SampledGuideway(response=records, time_step=time_step, offsets=numbers, speed=0.0)
-    frf = np.abs(at_rest.moving_frf(numbers, 0.0, omega))
+    frf = np.abs(np.exp(-1j * time_step * omega[:, None] * np.arange(len(records))) @ records)
     share = np.minimum(frf[:, 3:].max(axis=1), frf[:, 1:3].max(axis=1) ** 2 / frf[:, 0]) / frf[:, 0]
     back = share ** (2 * len(guideways)) * frf[:, 0] / frf[:, 0].max()
     worst = int(back.argmax())
     if back[worst] <= VALIDITY.reflected:
         return []
+    size = (
+        f"about {back[worst]:.1e} of the largest moving FRF"
+        if back[worst] < VALIDITY.untold
+        else "hardly weaker than they set out: the road is far too short, the moving FRF not to be relied on"
+    )
     return [
-        f"waves come back from the ends of the road: about {back[worst]:.1e} of the largest moving FRF, at "
-        f"{omega[worst] / (2 * np.pi):.3g} Hz; a longer road, absorbing ends, or the average of roads with pinned "
-        "and guided ends reflects less"
+        (
+            "reflections",
+            f"waves come back from the ends of the road, at {omega[worst] / (2 * np.pi):.3g} Hz {size}; a longer "
+            "road, absorbing ends, or the average of roads with pinned and guided ends reflects less",
+        )
     ]
