@@ -349,7 +349,7 @@ def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk", since: float
     """
     with checking() as check:
         check_weighting(check, weighting)
-        check_coupled(check, result)
+        result = check_coupled(check, result)
         if not check.faults and dof not in result.dof.values.tolist():
             check.refuse("dof", f"must be one of {', '.join(map(str, result.dof.values))}, got {shown(dof)}")
     step = float(result.attrs["time_step"])

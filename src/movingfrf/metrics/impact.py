@@ -47,7 +47,7 @@ def impact_factor(result: xr.Dataset, *, percentile: float = CUSTOMARY) -> Float
     Australian Road Research Board, 1983; as quoted in the literature on it.
     """
     with checking() as check:
-        check_coupled(check, result)
+        result = check_coupled(check, result)
         if not 0 <= (percentile := check.finite("percentile", percentile, "%")) <= 100:
             check.refuse("percentile", f"must lie between 0 and 100 %, got {percentile!r} %")
     load = result.static_load.values

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import BoolArray, FloatArray, require_memory
 from movingfrf._basics.checks import Checks, checking, real_numbers
-from movingfrf.results.labels import flaws
+from movingfrf.results.labels import flaws, resolved
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,7 +50,7 @@ def dynamic_load_coefficient(result: xr.Dataset) -> FloatArray:
     D. Cebon, Handbook of Vehicle-Road Interaction, Swets & Zeitlinger, 1999.
     """
     with checking() as check:
-        check_coupled(check, result)
+        result = check_coupled(check, result)
     return load_coefficient(np.sqrt(np.mean(result.contact_force.values**2, axis=0)), result.static_load.values)
 
 
@@ -154,7 +154,7 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
     from scipy.interpolate import CubicSpline
 
     with checking() as check:
-        check_coupled(check, result)
+        result = check_coupled(check, result)
         power = check.positive("power", power, "1")
         spacing = check.positive("spacing", spacing, "m")
     speed, time = result.attrs["speed"], result.time.values
@@ -330,7 +330,7 @@ def contact_loss(result: xr.Dataset) -> ContactLoss:
         If the result has no contact forces.
     """
     with checking() as check:
-        check_coupled(check, result)
+        result = check_coupled(check, result)
     lost = result.contact_force.values + result.static_load.values <= 0
     step = float(result.attrs["time_step"])
     longest = np.array([_longest_run(column) for column in lost.T]) * step
@@ -343,7 +343,7 @@ def _longest_run(flags: BoolArray) -> int:
     return int((edges[1::2] - edges[::2]).max(initial=0))
 
 
-def check_coupled(check: Checks, result: Any, *also: str) -> None:
+def check_coupled(check: Checks, result: Any, *also: str) -> Any:
     """Refuse what is not the response of a vehicle in time, or has no numbers for it.
 
     Parameters
@@ -354,10 +354,16 @@ def check_coupled(check: Checks, result: Any, *also: str) -> None:
         What was given as a result.
     *also : str
         Variables that are needed beside contact forces, static loads and accelerations.
+
+    Returns
+    -------
+    xarray.Dataset
+        The response as it was solved, in finer steps, where the result holds that; what is measured is taken of it.
     """
     names = ("contact_force", "static_load", "acceleration", *also)
     if not (hasattr(result, "data_vars") and {"time", "contact", "dof"} <= set(result.dims)):
         check.refuse("result", f"must be the coupled response of a vehicle, with {', '.join(names)}")
-        return
+        return result
     for flaw in flaws(result, names):
         check.refuse("result", f"must be the coupled response of a vehicle in finite numbers, but {flaw}")
+    return resolved(result)

@@ -56,7 +56,7 @@ def measures(result: xr.Dataset) -> list[Measure]:
             )
         ]
     with checking() as check:
-        check_coupled(check, result, "deflection", "static_deflection")
+        result = check_coupled(check, result, "deflection", "static_deflection")
     history = History(whole=result)
     return _everywhere(
         partial(Table.of_history, history=history, usual=True),
@@ -119,7 +119,7 @@ def assess(
     ['MTVV', 'VDV']
     """
     with checking() as check:
-        check_coupled(check, result, "deflection", "static_deflection")
+        result = check_coupled(check, result, "deflection", "static_deflection")
         if not check.faults:
             _check_chosen(check, "contacts", contacts, list(range(result.sizes["contact"])))
             _check_chosen(check, "dofs", dofs, result.dof.values.tolist())

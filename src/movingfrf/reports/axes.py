@@ -11,7 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.welch import spectral_density
 from movingfrf.reports.curves import GREY, INK, Curve, distinct
-from movingfrf.results.labels import time_step_of
+from movingfrf.results.labels import resolved, time_step_of
 from movingfrf.roughness.fitting import IsoFit
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES, IsoRoad
 
@@ -151,14 +151,15 @@ def draw_levels(ax: Axes, levels: FloatArray, curves: Sequence[Curve], scale: fl
 def draw_densities(
     ax: Axes,
     result: xr.Dataset,
-    values: FloatArray,
+    name: str,
     curves: Sequence[Curve],
     *,
     amplitude: bool,
     scale: float = 1.0,
 ) -> None:
-    """Draw spectral densities of columns of `values` (time, channel), as amplitudes or as powers."""
-    time_step = time_step_of(result)
+    """Draw spectral densities of the columns of a variable, as it was solved, as amplitudes or as powers."""
+    result = resolved(result)
+    time_step, values = time_step_of(result), result[name].values
     truncation = float(result.attrs.get("truncation", 0.0))
     if truncation > 0.499 / time_step:  # nothing is left out, and there is nothing to mark
         truncation = 0.0

@@ -82,7 +82,7 @@ def contact_force_spectra(result: xr.Dataset, ax: Axes, *, contacts: Sequence[in
         `ax`.
     """
     curves = contact_curves(result, contacts)
-    draw_densities(ax, result, result.contact_force.values, curves, amplitude=True)
+    draw_densities(ax, result, "contact_force", curves, amplitude=True)
     ax.set_ylabel("force amplitude density [N/√Hz]")
     return ax
 
@@ -131,7 +131,7 @@ def prescribed_force_spectra(result: xr.Dataset, ax: Axes, *, loads: Sequence[in
     matplotlib.axes.Axes
         `ax`.
     """
-    draw_densities(ax, result, result.force.values, load_curves(result, loads), amplitude=True)
+    draw_densities(ax, result, "force", load_curves(result, loads), amplitude=True)
     ax.set_ylabel("force amplitude density [N/√Hz]")
     return ax
 
@@ -184,7 +184,7 @@ def deflection_spectra(result: xr.Dataset, ax: Axes, *, places: Sequence[int] | 
         `ax`.
     """
     curves = place_curves(result, places)
-    draw_densities(ax, result, result.deflection.values, curves, amplitude=True, scale=1e6)
+    draw_densities(ax, result, "deflection", curves, amplitude=True, scale=1e6)
     ax.set_ylabel("deflection amplitude density [µm/√Hz]")
     return ax
 
@@ -231,7 +231,7 @@ def acceleration_spectrum(result: xr.Dataset, dof: int, ax: Axes) -> Axes:
     matplotlib.axes.Axes
         `ax`.
     """
-    draw_densities(ax, result, result.acceleration.values, [dof_curve(result, dof)], amplitude=False)
+    draw_densities(ax, result, "acceleration", [dof_curve(result, dof)], amplitude=False)
     ax.set_ylabel(f"PSD [({result.dof_unit.values[dof]}/s²)²/Hz]")
     return ax
 

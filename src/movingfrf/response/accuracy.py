@@ -2,59 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf.response.line import Given, Histories
+from movingfrf.response.line import Given
 from movingfrf.response.sampling import SAMPLING, Excited
 from movingfrf.response.solve import solve
 from movingfrf.response.system import CoupledHistories, Response, System
 from movingfrf.response.truncation import EVERYWHERE, Truncation
 
 
-def relative(
-    part: CoupledHistories,
-    whole: CoupledHistories,
-    *,
-    peaks: bool = True,
-    factors: Sequence[FloatArray | float] = (1.0, 1.0, 1.0, 1.0),
-) -> FloatArray:
-    """Greatest share that a part of the response has of any channel.
+def largest(records: FloatArray) -> FloatArray:
+    """Largest magnitudes of records, (*case, port, time) to (*case, port)."""
+    return np.abs(records).max(axis=-1)
+
+
+def rms(records: FloatArray) -> FloatArray:
+    """Root mean squares of records, (*case, port, time) to (*case, port)."""
+    return np.sqrt(np.square(records).mean(axis=-1))
+
+
+def relative(part: FloatArray, whole: FloatArray) -> FloatArray:
+    """Greatest share that a part has of any channel of its kind.
 
     Parameters
     ----------
-    part, whole : CoupledHistories
-        Dynamic parts of the response.
-    peaks : bool
-        Whether largest values are compared; otherwise root mean squares.
-    factors : sequence of ndarray
-        By what the part is multiplied, one for each channel of each kind.
+    part, whole : ndarray, shape (case, port)
+        Sizes.
 
     Returns
     -------
     ndarray, shape (case,)
-        Relative to the channel, for each case of the part.
+        Relative to the channel.
     """
-
-    def size(records: Histories) -> FloatArray:
-        if peaks:
-            return np.abs(records.values).max(axis=-1)
-        return np.sqrt(np.square(records.values).mean(axis=-1))
-
-    greatest = np.zeros(len(part.force.values))
-    for mine, all_of_it, factor in zip(part, whole, factors, strict=True):
-        of_whole = size(all_of_it)
-        of_whole = np.maximum(of_whole, SAMPLING.smallest * of_whole.max(initial=0.0))
-        of_part = factor * size(mine)
-        share = np.divide(of_part, of_whole, out=np.zeros_like(of_part), where=of_whole > 0)
-        greatest = np.maximum(greatest, share.max(axis=-1, initial=0.0))
-    return greatest
+    whole = np.maximum(whole, SAMPLING.smallest * whole.max(initial=0.0))
+    share: FloatArray = np.divide(part, whole, out=np.zeros_like(part), where=whole > 0)
+    return share.max(axis=-1, initial=0.0)
 
 
 def unresolved(driven_by: Excited, response: Response, histories: CoupledHistories) -> float:
     """Estimate what is not solved from the highest octave that is: from its largest values and its energy.
+
+    Forces and accelerations have more of it than deflections and motions.
 
     Parameters
     ----------
@@ -70,13 +59,16 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
     float
         Relative to the largest value of a channel.
     """
-    count = driven_by.omega.size
-    octave = [spectra.copy() for spectra in response]
-    for spectra in octave:
-        spectra[..., : count // 2] = 0.0
-    ports = [spectra.shape[-2] for spectra in (response.force, response.deflection, response.motion)]
-    beyond = np.split(driven_by.beyond, np.cumsum([*ports, ports[-1]])[:-1])
-    return float(relative(Response(*octave).histories(driven_by.line), histories, factors=beyond).max())
+    line, beyond, begins = driven_by.line, driven_by.beyond, driven_by.omega.size // 2
+    force, motion = response.force.copy(), response.motion.copy()
+    for spectra in (force, motion):
+        spectra[..., :begins] = 0.0
+    of_force = beyond[: force.shape[-2]] * largest(line.records(force).values)
+    of_acceleration = beyond[-motion.shape[-2] :] * largest(line.records(motion, derivative=2).values)
+    return max(
+        float(relative(part, largest(whole.values)).max(initial=0.0))
+        for part, whole in ((of_force, histories.force), (of_acceleration, histories.acceleration))
+    )
 
 
 def past_the_end(
@@ -104,8 +96,9 @@ def past_the_end(
     """
     omega = driven_by.omega
     response = solve(system, omega, driven_by.likewise(given), truncation=driven_by.truncation)
-    before = CoupledHistories(*(Histories(some.values[..., :known], some.wrapped) for some in histories))
-    return float(np.median(relative(response.histories(driven_by.line), before)))
+    pairs = zip(response.histories(driven_by.line), histories, strict=True)
+    shares = [relative(largest(off.values), largest(all_of_it.values[..., :known])) for off, all_of_it in pairs]
+    return float(np.median(np.max(shares, axis=0)))
 
 
 def truncated(system: System, driven_by: Excited, response: Response, histories: CoupledHistories) -> Truncation:
@@ -131,12 +124,13 @@ def truncated(system: System, driven_by: Excited, response: Response, histories:
     if cut.error <= SAMPLING.estimated:
         return cut
     first = cut.untouched(omega)
-    whole = solve(system, omega[first:], driven_by.spectra[..., first:], truncation=EVERYWHERE)
+    untruncated = solve(system, omega[first:], driven_by.spectra[..., first:], truncation=EVERYWHERE)
     change = []
-    for with_it, without in zip(response, whole, strict=True):
+    for with_it, without in zip(response, untruncated, strict=True):
         difference = np.zeros((*without.shape[:-1], omega.size), complex)
         difference[..., first:] = without
         difference[..., first : with_it.shape[-1]] -= with_it[..., first:]
         change.append(difference)
-    error = float(relative(Response(*change).histories(driven_by.line), histories, peaks=False).max())
+    pairs = zip(Response(*change).histories(driven_by.line), histories, strict=True)
+    error = max(float(relative(rms(off.values), rms(whole.values)).max(initial=0.0)) for off, whole in pairs)
     return Truncation(frequency=cut.frequency, error=error)

@@ -217,12 +217,17 @@ class Line:
             np.fft.rfft(padded, out=spectra[some])
         return spectra.reshape(*values.shape[:-1], self.size)
 
-    def scratch(self) -> NDArray[np.float64]:
+    def scratch(self, finer: int = 1) -> NDArray[np.float64]:
         """Memory for `records` to work in: fresh pages cost more than a transform."""
-        return np.empty((TRANSFORM.together, self.padded))
+        return np.empty((TRANSFORM.together, self.padded * finer))
 
     def records(
-        self, spectra: ComplexArray, *, derivative: int = 0, scratch: NDArray[np.float64] | None = None
+        self,
+        spectra: ComplexArray,
+        *,
+        derivative: int = 0,
+        finer: int = 1,
+        scratch: NDArray[np.float64] | None = None,
     ) -> Histories:
         """Transform spectra, or their derivatives in time, back to records; the inverse of `spectra`.
 
@@ -232,6 +237,8 @@ class Line:
             Spectra along ω − iη; frequencies beyond the last one are zero.
         derivative : int
             Order of the derivative with respect to time.
+        finer : int
+            How many values there shall be for each sample of the record.
         scratch : ndarray, optional
             What `scratch()` returned, to be used again for several calls.
 
@@ -243,20 +250,21 @@ class Line:
         """
         ports = spectra.shape[:-1]
         rows = spectra.reshape(math.prod(ports), spectra.shape[-1])
-        values, wrapped = np.zeros((len(rows), self.samples)), np.zeros(len(rows))
+        samples, padded, step = self.samples * finer, self.padded * finer, self.time_step / finer
+        values, wrapped = np.zeros((len(rows), samples)), np.zeros(len(rows))
         if not rows.size:
-            return Histories(values.reshape(*ports, self.samples), wrapped.reshape(ports))
-        last = self.padded // 100 + 1
-        memory = self.scratch() if scratch is None else scratch
+            return Histories(values.reshape(*ports, samples), wrapped.reshape(ports))
+        last = padded // 100 + 1
+        memory = self.scratch(finer) if scratch is None else scratch
         factor = (1j * self.omega(slice(rows.shape[1]))) ** derivative if derivative else None
-        growth = np.exp(self.decay * self.time_step * np.arange(self.samples)) / self.time_step
+        growth = np.exp(self.decay * step * np.arange(samples)) / step
         for first in range(0, len(rows), TRANSFORM.together):
             some = slice(first, first + TRANSFORM.together)
-            block = folded(rows[some] if factor is None else rows[some] * factor, self.padded)
-            periodic = np.fft.irfft(block, self.padded, out=memory[: len(block)])
-            np.multiply(periodic[:, : self.samples], growth, out=values[some])
-            wrapped[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / self.time_step
-        return Histories(values.reshape(*ports, self.samples), wrapped.reshape(ports))
+            block = folded(rows[some] if factor is None else rows[some] * factor, padded)
+            periodic = np.fft.irfft(block, padded, out=memory[: len(block)])
+            np.multiply(periodic[:, :samples], growth, out=values[some])
+            wrapped[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / step
+        return Histories(values.reshape(*ports, samples), wrapped.reshape(ports))
 
 
 def folded(spectra: ComplexArray, samples: int) -> ComplexArray:

@@ -229,6 +229,21 @@ def driven(
         "acceleration": turned(acceleration.values[0]),
         "roughness": turned(excitation.elevation(journey.travelled)),
     }
+    if any(finding.code == "beyond_nyquist" for finding in found):
+        # What is measured is taken from the response in the steps in which it was solved.
+        finer = int(np.ceil(journey.time_step / driven_by.step))
+        fine, times = (
+            response.histories(driven_by.line, finer),
+            line.time_step / finer * np.arange(line.samples * finer),
+        )
+        values |= {
+            "solved_time": times,
+            "solved_contact_force": turned(fine.force.values[0]),
+            "solved_deflection": turned(fine.deflection.values[0] + steady.deflection[:, None]),
+            "solved_motion": turned(fine.motion.values[0]),
+            "solved_acceleration": turned(fine.acceleration.values[0]),
+            "solved_roughness": turned(excitation.elevation(journey.speed * times)),
+        }
     settings = attributes(
         "coupled",
         "Coupled response of a vehicle and a guideway",

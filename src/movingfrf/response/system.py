@@ -71,14 +71,14 @@ class Response(NamedTuple):
     deflection: ComplexArray  # contact; beyond the truncation, where it is zero, left out
     motion: ComplexArray  # degree of freedom
 
-    def histories(self, line: Line) -> CoupledHistories:
-        """Transform to time, along the line on which the response was solved."""
-        scratch = line.scratch()
+    def histories(self, line: Line, finer: int = 1) -> CoupledHistories:
+        """Transform to time, along the line on which the response was solved; several values for a sample."""
+        scratch = line.scratch(finer)
         return CoupledHistories(
-            force=line.records(self.force, scratch=scratch),
-            deflection=line.records(self.deflection, scratch=scratch),
-            motion=line.records(self.motion, scratch=scratch),
-            acceleration=line.records(self.motion, derivative=2, scratch=scratch),
+            force=line.records(self.force, finer=finer, scratch=scratch),
+            deflection=line.records(self.deflection, finer=finer, scratch=scratch),
+            motion=line.records(self.motion, finer=finer, scratch=scratch),
+            acceleration=line.records(self.motion, derivative=2, finer=finer, scratch=scratch),
         )
 
 

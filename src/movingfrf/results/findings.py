@@ -124,8 +124,8 @@ def not_shown(shares: FloatArray, names: Sequence[str], time_step: float) -> lis
         Finding(
             "beyond_nyquist",
             f"{share:.1%} of the root mean square of the {name} lies above {0.5 / time_step:g} Hz, which a record "
-            f"in steps of {time_step:g} s cannot show: its values are right, what is made of them, spectra, "
-            "weighted values and peaks, is not; a shorter time step shows more",
+            f"in steps of {time_step:g} s cannot show. Its values are right; measures and spectra are made of the "
+            "response as it was solved, which is kept beside it",
             share,
         )
     ]

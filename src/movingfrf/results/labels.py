@@ -50,6 +50,18 @@ COUPLED: dict[str, Label] = {
     "place_deflection": Label(("time", "place"), "m", "deflection of the road at that point, down", optional=True),
 }
 
+# Its records in the steps in which it was solved, where those of the output do not show all of it.
+AS_SOLVED = {
+    f"solved_{name}": label._replace(
+        dims=tuple("solved_time" if dim == "time" else dim for dim in label.dims),
+        long_name=f"{label.long_name}, as it was solved",
+        optional=True,
+    )
+    for name, label in tuple(COUPLED.items())
+    if label.dims[0] == "time" and not label.optional
+}
+COUPLED |= AS_SOLVED
+
 # The response of a guideway to prescribed forces.
 LOADED: dict[str, Label] = {
     "time": COUPLED["time"],
@@ -240,6 +252,26 @@ def labelled(values: Mapping[str, ArrayLike], attributes: Mapping[str, str | flo
         variable = xr.Variable(label.dims, np.asarray(value), {"units": label.units, "long_name": label.long_name})
         (coordinates if label.coordinate else data)[name] = variable
     return xr.Dataset(data, coordinates, dict(attributes))
+
+
+def resolved(result: xr.Dataset) -> xr.Dataset:
+    """Take a coupled response as it was solved, in finer steps, if it holds that.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        The coupled response of a vehicle.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same variables, and the step among its attributes; the result itself where it shows all of the response.
+    """
+    if "solved_time" not in result.dims:
+        return result
+    fine = result.drop_dims("time")
+    fine = fine.rename({name: str(name).removeprefix("solved_") for name in fine.variables if name in AS_SOLVED})
+    return fine.assign_attrs(time_step=time_step_of(fine))
 
 
 def flaws(result: xr.Dataset, names: Iterable[str]) -> list[str]:
