@@ -87,9 +87,10 @@ calls: $(READY)
 dist: $(READY)
 	PYTHON=$(PYTHON) tools/dist.sh
 
-# The picture of the rooms and their arrows, drawn from the imports.
+# The pictures of the documentation: rooms and their arrows, drawn from the imports; sampling.
 picture: $(READY)
 	$(BIN)/python docs/images/rooms.py
+	$(BIN)/python -W ignore docs/images/sampling.py
 
 # An editable install, redone when the dependencies change. The mark is set last: an interrupted
 # installation is taken up again.

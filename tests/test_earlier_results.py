@@ -25,7 +25,11 @@ from movingfrf.results.files import load
 
 WRITTEN = Path(__file__).parent / "data" / "written_by_0_1"
 
-# The exponential window raises rounding by up to 3e4, other processors round differently.
+# 0.1 sampled road and loads at the steps of the output: what lay above 100 Hz folded onto what lies below, or was
+# lost, and a truncation's error was counted over the padding too. How far results differ for that, relative L2; all
+# else stays.
+FOLDED = {"contact_force": 6e-3, "acceleration": 6e-3, "motion": 5e-5, "deflection": 2e-4}
+SAMPLED = {"truncation", "truncation_error"}
 ROUNDING = 1e-9
 
 
@@ -62,12 +66,15 @@ def test_a_scenario_says_what_it_said(name):
     assert set(now.variables) == set(earlier.variables)
     for variable in now.variables:
         if now[variable].dtype.kind == "f":
-            assert relative(now[variable].values, earlier[variable].values) < ROUNDING, variable
+            assert relative(now[variable].values, earlier[variable].values) < FOLDED.get(variable, ROUNDING), (
+                variable
+            )
         else:
             assert (now[variable].values == earlier[variable].values).all(), variable
     numbers = {key for key, value in earlier.attrs.items() if isinstance(value, float)}
-    assert set(now.attrs) - {"kind", "method"} == set(earlier.attrs)  # which said neither
-    assert all(now.attrs[key] == pytest.approx(earlier.attrs[key], rel=1e-6) for key in numbers)
+    # Which said neither.
+    assert set(now.attrs) - {"kind", "method", "solved_step", "grade"} == set(earlier.attrs)
+    assert all(now.attrs[key] == pytest.approx(earlier.attrs[key], rel=1e-6) for key in numbers - SAMPLED)
     codes = [[one["code"] for one in json.loads(result.attrs["findings"])] for result in (now, earlier)]
     assert codes[0] == codes[1]
 

@@ -423,4 +423,5 @@ def test_keys_say_what_the_signature_says():
         "time_step",
         "truncation",
         "blend",
+        "solved_step",
     ]

@@ -188,7 +188,7 @@ def test_a_stiff_contact_tends_to_the_rigid_one(road):
             for k in (stiffness, np.inf)
         )
         found, wanted = (
-            mf.simulate(DAMPED[road], one, profile, speed=20.0, duration=3.0, solved_step=1e-3)
+            mf.simulate(DAMPED[road], one, profile, speed=20.0, duration=3.0, solved_step=2e-4)
             for one in (stiff, held)
         )
         errors.append(
@@ -420,6 +420,7 @@ def test_a_contact_envelops_the_road(footprint, cams):
 # What is left is rounding, which reaches up to any frequency.
 @pytest.mark.filterwarnings("ignore:.*of the slope of the road")
 @pytest.mark.filterwarnings("ignore:the vehicle's motion has not died away")
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
 def test_cams_in_a_computation():
     """On a sine of twice the distance of the cams they stand on opposite slopes and see nothing of it."""
     profile = mf.harmonic(amplitude=1e-3, wavelength=0.8, length=140.0, start=-1.0)

@@ -63,8 +63,8 @@ FAULTS = [
     Fault(
         "nothing is unresolved",
         "response/accuracy.py",
-        "histories, factors=beyond)",
-        "histories, factors=[0 * b for b in beyond])",
+        "beyond[-motion.shape[-2] :] * largest(",
+        "0 * largest(",
     ),
     Fault("guesses do not matter", "response/simulation.py", "if excitation.guessed > 0:", "if False:"),
     Fault(

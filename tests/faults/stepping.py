@@ -272,7 +272,7 @@ FAULTS = [
     Fault("kinks of the hats forgotten", "stepping/duhamel.py", "/ (12 * count)", "/ (1e9 * count)"),
     Fault("struck road as if sampled", "stepping/impulse.py", "stepped=True", "stepped=False"),
     Fault("no limit to the estimate", "stepping/impulse.py", "if back[worst] < VALIDITY.untold", "if True"),
-    Fault("findings of the road left out", "stepping/duhamel.py", "*road.findings],", "],"),
+    Fault("findings of the road left out", "stepping/duhamel.py", "            *road.findings,", ""),
     Fault("reflections unseen", "stepping/impulse.py", "share ** (2 * len(guideways))", "0 * share"),
     Fault(
         "wrong half of the first hat",

@@ -122,8 +122,8 @@ def test_many_contacts_take_little_memory_before_they_are_solved():
     excited(system, lambda line: line.given(np.ones((1, 100, 500))), line, 2e-3, truncation=70.0)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    # All at once they took 420 MB.
-    assert peak < 120e6
+    # All at once their tables took 420 MB. A few frequencies at a time, and what each contact does to each output.
+    assert peak < 220e6
 
 
 def test_many_loads_take_little_memory():

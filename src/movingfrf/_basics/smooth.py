@@ -2,25 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Onward:
-    """What tunes how a record goes on past its end; in brackets, between what each number is safe."""
-
-    # Slope and curvature fade over so many times the ratio of the record's typical slope to its typical curvature:
-    # enough not to add frequencies.
-    times_its_scale: float = 12.0  # [12 to 16]
-    # So many of its last samples tell what is typical.
-    lately: int = 4096  # [256 to 65 536]
-
-
-ONWARD = Onward()
 
 
 def smooth_step(x: FloatArray) -> FloatArray:
@@ -48,23 +32,24 @@ def smooth_step_slope(x: FloatArray) -> FloatArray:
     return slope
 
 
-def memory(slopes: FloatArray, curvatures: FloatArray) -> FloatArray:
+def memory(slopes: FloatArray, curvatures: FloatArray, *, times_its_scale: float = 12.0) -> FloatArray:
     """Length over which slope and curvature of a record fade past its end; inf if it is straight.
 
     Parameters
     ----------
     slopes, curvatures : ndarray, shape (*record, sample)
-        First and second derivative along the record.
+        First and second derivative along the record, towards its end.
+    times_its_scale : float
+        So many times the ratio of typical slope to typical curvature: enough not to add frequencies [12 to 16].
 
     Returns
     -------
     ndarray, shape (*record)
         In the unit of what the record runs along.
     """
-    last = slice(-ONWARD.lately, None)
-    slope, curvature = ((values[..., last] ** 2).sum(axis=-1) for values in (slopes, curvatures))
+    slope, curvature = (np.square(values).sum(axis=-1) for values in (slopes, curvatures))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(curvature > 0, ONWARD.times_its_scale * np.sqrt(slope / curvature), np.inf)
+        return np.where(curvature > 0, times_its_scale * np.sqrt(slope / curvature), np.inf)
 
 
 def onward(

@@ -145,21 +145,25 @@ def influence(system: Sized, line: Line, magnitudes: FloatArray, truncation: flo
     starts = _bands(line, truncation)
     omega = line.omega((starts + np.r_[starts[1:], line.size] - 1) // 2)
     batch = BATCH.frequencies(system.entries)
-    pieces = map(system.per_unit, np.split(omega, range(batch, omega.size, batch)))
-    added, whole = (np.concatenate(parts, axis=2) for parts in zip(*pieces, strict=True))
     cases = magnitudes.reshape(-1, *magnitudes.shape[-2:])
     power = np.add.reduceat(cases**2, starts, axis=2)
-    return Influence(
-        starts=starts,
-        added=_share(added, power),
-        whole=_share(whole, power),
-        total=np.einsum("cob,ncb->no", whole**2, power),
-        lines=line.size,
-    )
-
-
-def _share(gain: FloatArray, power: FloatArray) -> Share:
-    return Share(gain, np.einsum("cob,ncb->nob", gain, np.sqrt(power)) ** 2)
+    shares: list[Share] = []
+    total, first = np.zeros(0), 0
+    for some in np.split(omega, range(batch, omega.size, batch)):
+        here = slice(first, first + some.size)
+        gains = system.per_unit(some)
+        if not shares:
+            # Gains of many contacts are many; half of the digits tell what is negligible.
+            ports, outputs, _ = gains[0].shape
+            shape = len(cases), outputs, omega.size
+            shares = [Share(np.empty((ports, *shape[1:]), np.float32), np.empty(shape)) for _ in gains]
+            total = np.zeros(shape[:2])
+        for share, gain in zip(shares, gains, strict=True):
+            share.gain[..., here] = gain
+            share.energy[..., here] = np.einsum("cob,ncb->nob", gain, np.sqrt(power[..., here])) ** 2
+        total += np.einsum("cob,cob,ncb->no", gains[-1], gains[-1], power[..., here])
+        first += some.size
+    return Influence(starts=starts, added=shares[0], whole=shares[1], total=total, lines=line.size)
 
 
 def relative(part: FloatArray, whole: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory
 from movingfrf._basics.checks import checking
-from movingfrf._basics.smooth import ONWARD, memory, onward, smooth_step
+from movingfrf._basics.smooth import memory, onward, smooth_step
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,6 +24,8 @@ class Transform:
     wrap_around: float = 3e-5  # [1e-5 to 5e-5]
     # Share of the padding within which a record fades out after its end; the rest is for the response to die away.
     fades: float = 0.25  # [0.15 to 0.4]
+    # So many samples before the end of a record tell how it goes on.
+    lately: int = 4096  # [256 to 65 536]
     # A jump at the start is taken out as a pulse whose rate of decay is this share of a step's inverse, at least so
     # many times that of the period.
     pulse: float = 0.01  # [1e-3 to 0.05]
@@ -73,9 +75,9 @@ class Line:
 
     Examples
     --------
-    >>> line = Line(samples=1000, time_step=1e-3, points=2000)
+    >>> line = Line(samples=1000, time_step=1e-3, settling=1.0, points=8000)
     >>> spectrum = line.spectra(Given(np.sin(2 * np.pi * 5 * line.instants) ** 3))
-    >>> bool(np.allclose(line.records(spectrum).values, np.sin(2 * np.pi * 5 * line.time) ** 3, atol=1e-9))
+    >>> bool(np.allclose(line.records(spectrum).values, np.sin(2 * np.pi * 5 * line.time) ** 3, atol=1e-6))
     True
     """
 
@@ -158,7 +160,7 @@ class Line:
         within = int(np.searchsorted(instants, known[-1], side="right"))
         values = np.empty((*records.shape[:-1], instants.size))
         values[..., :within] = spline(instants[:within])
-        latest = known[-ONWARD.lately :]
+        latest = known[-TRANSFORM.lately :]
         length = np.clip(memory(spline(latest, 1), spline(latest, 2)), 4 * self.time_step, known[-1])
         slope, curvature = (spline(known[-1:], order) for order in (1, 2))
         after = instants[within:] - known[-1]

@@ -51,7 +51,7 @@ COUPLED: dict[str, Label] = {
 }
 
 # Its records in the steps in which it was solved, where those of the output do not show all of it.
-AS_SOLVED = {
+COUPLED |= {
     f"solved_{name}": label._replace(
         dims=tuple("solved_time" if dim == "time" else dim for dim in label.dims),
         long_name=f"{label.long_name}, as it was solved",
@@ -60,7 +60,6 @@ AS_SOLVED = {
     for name, label in tuple(COUPLED.items())
     if label.dims[0] == "time" and not label.optional
 }
-COUPLED |= AS_SOLVED
 
 # The response of a guideway to prescribed forces.
 LOADED: dict[str, Label] = {
@@ -270,7 +269,7 @@ def resolved(result: xr.Dataset) -> xr.Dataset:
     if "solved_time" not in result.dims:
         return result
     fine = result.drop_dims("time")
-    fine = fine.rename({name: str(name).removeprefix("solved_") for name in fine.variables if name in AS_SOLVED})
+    fine = fine.rename({name: name[7:] for name in map(str, fine.variables) if name.startswith("solved_")})
     return fine.assign_attrs(time_step=time_step_of(fine))
 
 

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 class Seeing:
     """What tunes how contacts see a road; in brackets, between what each number is safe."""
 
-    # Samples that are averaged about one level: on the way of so many a road does not climb far.
+    # Samples that are averaged about one level, on the way of which a road does not climb far; and last stations,
+    # which tell how a profile goes on.
     together: int = 4096  # [256 to 16 384]
     # Past its end a profile goes on over so many of its last steps at least, over so many times its length at most,
     # in so many cubic pieces.
@@ -104,7 +105,8 @@ class Along(NamedTuple):
         # Past the end slope and curvature fade, over a length that adds no frequencies.
         end, slope, curvature = (float(about(stations[-1], order)) for order in range(3))
         extent = stations[-1] - stations[0]
-        length = float(memory(level[2], 2.0 * level[1]))
+        latest = level[:, -SEEING.together :]
+        length = float(memory(latest[2], 2.0 * latest[1]))
         length = min(max(length, SEEING.fewest * extent / level.shape[1]), SEEING.longest * extent)
         after = np.linspace(0.0, length, SEEING.pieces + 1)
         fading = CubicSpline(after, end + onward(after, slope, curvature, length), bc_type=((1, slope), (1, 0.0)))

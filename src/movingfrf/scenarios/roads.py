@@ -102,9 +102,8 @@ def by_class(spectrum: Any) -> Kind:
     )
 
 
-# What the way says of a realisation.
-OF_THE_WAY = ("length", "start", "covering")
-REALISING = keys_of(realise, without=["spectrum", *OF_THE_WAY])
+# The way says length, start and covering.
+REALISING = keys_of(realise, without=["spectrum", "length", "start", "covering"])
 
 
 def realised(spectrum: Kind) -> Kind:
@@ -206,7 +205,9 @@ SPECTRA = (
 # Kinds of roads.
 ROADS = (
     *map(realised, SPECTRA),
-    replace(Kind.of(realise_laplace, name="laplace_road", without=OF_THE_WAY), make=laplace_road),
+    replace(
+        Kind.of(realise_laplace, name="laplace_road", without=["length", "start", "covering"]), make=laplace_road
+    ),
     shaped(irregularities.harmonic),
     shaped(irregularities.bump),
     shaped(irregularities.pothole),
