@@ -43,7 +43,9 @@ def record() -> None:
     at_end = known / speed
     before = line.instants <= at_end
     above.plot(line.instants[before], 1e3 * elevation[0, before], color="0.1", label="profile, blended in")
-    above.plot(line.instants[~before], 1e3 * elevation[0, ~before], color="tab:orange", label="guessed past its end")
+    above.plot(
+        line.instants[~before], 1e3 * elevation[0, ~before], color="tab:orange", label="guessed past its end"
+    )
     above.plot(time, 1e3 * faded / window, color="tab:blue", linestyle="--", label="faded out within the padding")
     above.set_ylabel("elevation [mm]")
     below.plot(time, window, color="tab:green", label=f"exponential window, to {TRANSFORM.wrap_around:g}")
@@ -81,7 +83,11 @@ def steps() -> None:
         label=f"as solved, every {1e3 * result.attrs['solved_step']:.2g} ms",
     )
     axes.plot(
-        result.time[some], 1e-3 * result.contact_force[some, 0], "o-", color="tab:blue", label="record, every 2.1 ms"
+        result.time[some],
+        1e-3 * result.contact_force[some, 0],
+        "o-",
+        color="tab:blue",
+        label="record, every 2.1 ms",
     )
     axes.set(xlabel="time [s]", ylabel="dynamic contact force [kN]")
     legend_above(axes)

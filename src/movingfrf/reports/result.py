@@ -74,8 +74,20 @@ def _settings(result: xr.Dataset) -> list[Setting]:
         Setting("Duration", f"{plain(duration)} s"),
         Setting("Distance", f"{plain(float(f'{duration * abs(speed):.12g}'))} m"),
         Setting("Time step", f"{plain(1e3 * step)} ms", f"{result.sizes['time']} samples"),
+        *(
+            [
+                Setting(
+                    "Solved in steps of", f"{1e3 * attrs['solved_step']:.3g} ms", "as fine as road and system need"
+                )
+            ]
+            if "solved_step" in attrs
+            else []
+        ),
         *_truncation_settings(result),
     ]
+    if "solved_step" in attrs:
+        solved = f"{1e3 * attrs['solved_step']:.3g} ms"
+        found.append(Setting("Solved in steps of", solved, "which road and system need"))
     if "critical_speed" in attrs:
         critical = attrs["critical_speed"]
         found.append(
@@ -94,6 +106,9 @@ def _settings(result: xr.Dataset) -> list[Setting]:
         found.append(Setting("Blend", f"{plain(attrs['blend'])} m", "over which the profile sets in"))
     if "datum" in attrs:
         found.append(Setting("Datum", f"{number(attrs['datum'])} m", "subtracted from the profile's elevations"))
+    if attrs.get("grade"):
+        grade = f"{100 * attrs['grade']:+.3g} %"
+        found.append(Setting("Grade", grade, "part of the steady state: elevation and motion are about it"))
     if "road" in attrs:
         found.append(Setting("Roughness", attrs["road"], wide=True))
     if "guideway" in attrs:

@@ -131,6 +131,7 @@ def truncated(system: System, driven_by: Excited, response: Response, histories:
         difference[..., first:] = without
         difference[..., first : with_it.shape[-1]] -= with_it[..., first:]
         change.append(difference)
-    pairs = zip(Response(*change).histories(driven_by.line), histories, strict=True)
-    error = max(float(relative(rms(off.values), rms(whole.values)).max(initial=0.0)) for off, whole in pairs)
+    error = 0.0
+    for off, cut_off in zip(Response(*change).histories(driven_by.line), histories, strict=True):
+        error = max(error, float(relative(rms(off.values), rms(cut_off.values + off.values)).max(initial=0.0)))
     return Truncation(frequency=cut.frequency, error=error)

@@ -206,6 +206,11 @@ class Excitation:
         """Elevation at the foremost contact's start, on its path [m]."""
         return self.along[self.touch.paths[int(self.touch.positions.argmax())]].datum
 
+    @property
+    def settings(self) -> dict[str, float]:
+        """What a result says of how its road is counted, by the names of its attributes."""
+        return {"datum": self.datum, "grade": self.grade}
+
     def elevation(self, travelled: FloatArray) -> FloatArray:
         """Elevation that each contact sees, about the datum of its path and the grade.
 

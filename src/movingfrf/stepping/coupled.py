@@ -370,7 +370,7 @@ def prepared_journey(
             f"Coupled response of a vehicle and a finite road: {name}",
             method=method,
             **journey.settings,
-            datum=seen.datum,
+            **seen.settings,
             run_in=run_in,
             superposed=int(superposed),
             scheme=repr(row),
@@ -380,6 +380,7 @@ def prepared_journey(
                 *steady.findings,
                 *find.contact_lost(force + steady.load, journey.time_step),
                 *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
+                *find.grade_taken(seen.settings["grade"]),
             ],
         )
         values = {
@@ -403,7 +404,7 @@ class Seen(NamedTuple):
 
     roughness: FloatArray  # (time, contact) [m]
     rate: FloatArray  # (time, contact) [m/s]
-    datum: float  # [m]
+    settings: dict[str, float]  # datum [m] and grade
 
 
 def seen_in_time(profile: Profile, vehicle: Vehicle, journey: Journey) -> Seen:
@@ -428,7 +429,7 @@ def seen_in_time(profile: Profile, vehicle: Vehicle, journey: Journey) -> Seen:
     )
     roughness = excitation.elevation(journey.travelled)
     rate = excitation.rate(journey.travelled, journey.speed)
-    return Seen(np.ascontiguousarray(roughness.T), np.ascontiguousarray(rate.T), excitation.datum)
+    return Seen(np.ascontiguousarray(roughness.T), np.ascontiguousarray(rate.T), excitation.settings)
 
 
 def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress) -> tuple[Steady, State]:

@@ -201,11 +201,12 @@ def convolved(
         "Coupled response of a vehicle and a guideway: Duhamel's integral",
         method="duhamel",
         **journey.settings,
-        datum=seen.datum,
+        **seen.settings,
         critical_speed=road.critical_speed,
         findings=[
             *find.contact_lost(force + load, time_step),
             *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
+            *find.grade_taken(seen.settings["grade"]),
             *road.findings,
         ],
     )

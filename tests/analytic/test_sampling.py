@@ -1,0 +1,255 @@
+"""In what steps a record is solved: against steady waves, finer steps, longer records, and other steps."""
+
+import json
+
+import numpy as np
+import pytest
+
+import movingfrf as mf
+from movingfrf.response.line import Line, folded
+from tests.helpers import DAMPED, HALF_TRUCK, QUARTER_TRUCK
+
+PAVEMENT = DAMPED["euler_bernoulli_winkler"]
+TRACK = DAMPED["rail_pad_sleeper_ballast"]
+WHEELSET = mf.wheelset(mass=1800.0, contact_stiffness=2.4e9)
+HERTZ = mf.wheelset(mass=600.0, contact_stiffness=1.1e9)
+DASHPOT = mf.quarter_car(**QUARTER_TRUCK | {"tyre_damping": 5e3})
+
+
+def largest(found, wanted):
+    """Largest difference of any channel over its largest value, at the instants of the first."""
+    wanted = wanted[: len(found)]
+    return float((np.abs(found - wanted).max(axis=0) / np.abs(wanted).max(axis=0)).max())
+
+
+def codes(result):
+    return [found["code"] for found in json.loads(result.attrs["findings"])]
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+@pytest.mark.parametrize("time_step", [1e-3, 7.3e-3])
+@pytest.mark.parametrize(("wavelength", "speed"), [(0.05, 36.0), (0.04, 30.0), (0.03, 12.0)])
+def test_tones_above_the_nyquist_frequency(wavelength, speed, time_step):
+    """In steady state |D/(1 + D G)| a, whatever frequency it would fold to."""
+    duration, amplitude = 1.2, 5e-6
+    rail = mf.harmonic(amplitude=amplitude, wavelength=wavelength, length=speed * duration + 10.0)
+    result = mf.simulate(TRACK, WHEELSET, rail, speed=speed, duration=duration, time_step=time_step)
+    omega = 2 * np.pi * speed / wavelength
+    frf = TRACK.moving_frf(0.0, speed, [omega])[0]
+    stiffness = WHEELSET.dynamics().stiffness(np.array([omega + 0j]))[0, 0, 0]
+    wanted = abs(stiffness / (1 + stiffness * frf)) * amplitude
+    late = result.time.values > 0.6 * duration
+    time, force = result.time.values[late], result.contact_force.values[late, 0]
+    waves = np.stack([np.cos(omega * time), np.sin(omega * time)], axis=1)
+    parts = np.linalg.lstsq(waves, force)[0]
+    # A spline through eight stations to the wave has an amplitude of its own.
+    assert np.hypot(*parts) == pytest.approx(wanted, rel=1e-3)
+    assert np.abs(force - waves @ parts).max() < 2e-3 * wanted
+    assert codes(result) == ["beyond_nyquist"]
+    assert result.attrs["solved_step"] < 0.5 * wavelength / speed
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+@pytest.mark.parametrize(
+    ("guideway", "vehicle", "speed", "seed"),
+    [(PAVEMENT, DASHPOT, 40.0, 1), (TRACK, HERTZ, 70.0, 2), (TRACK, mf.wheelset(mass=900.0), 30.0, 3)],
+)
+def test_images_of_the_spline_are_solved_for(guideway, vehicle, speed, seed):
+    """Two stations and a half to the shortest wave; a quarter of the step changes nothing."""
+    spectrum = mf.IsoRoad(roughness=1e-8, band=(0.05, 4.0))
+    road = mf.realise(spectrum, length=2.6 * speed + 30.0, step=0.1, seed=seed)
+    travel = {"speed": speed, "duration": 1.0, "time_step": 2e-3}
+    found = mf.simulate(guideway, vehicle, road, **travel)
+    finer = mf.simulate(
+        guideway, vehicle, road, **travel | {"duration": 2.5}, solved_step=found.attrs["solved_step"] / 4
+    )
+    assert not {"unresolved", "profile_ends", "not_decayed"} & set(codes(found))
+    for name in ("contact_force", "acceleration", "motion"):
+        assert largest(found[name].values, finer[name].values) < 5e-4, name
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_the_step_is_the_users():
+    """Values at the same instants are the same, in steps of 20, 5 and 1 ms."""
+    road = mf.realise(mf.IsoRoad.of_class("A", band=(0.01, 6.0)), length=70.0, seed=0, start=-3.0)
+    truck = mf.half_car(**HALF_TRUCK)
+    by_step = {
+        step: mf.simulate(PAVEMENT, truck, road, speed=10.0, duration=5.0, time_step=step)
+        for step in (1e-3, 5e-3, 2e-2)
+    }
+    fine = by_step[1e-3]
+    for step, result in by_step.items():
+        every = round(step / 1e-3)
+        for name in ("contact_force", "deflection", "motion", "acceleration"):
+            assert largest(result[name].values, fine[name].values[::every]) < 1e-4, (step, name)
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_stations_of_a_realised_road_hardly_matter():
+    """Harmonics belong to seed, length and band, so that only the spline between stations differs."""
+    spectrum, truck = mf.IsoRoad.of_class("A", band=(0.01, 6.0)), mf.half_car(**HALF_TRUCK)
+    forces = []
+    for step in (None, 0.0125, 0.05):
+        road = mf.realise(spectrum, length=70.0, step=step, seed=0, start=-3.0)
+        forces.append(mf.simulate(PAVEMENT, truck, road, speed=10.0, duration=5.0).contact_force.values)
+    apart = [np.linalg.norm(force - forces[1]) / np.linalg.norm(forces[1]) for force in forces]
+    assert apart[0] < 1e-4
+    assert apart[2] < 3e-3
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+@pytest.mark.parametrize(
+    ("footprint", "cams", "speed", "vehicle"),
+    [(0.5, 0.0, 5.0, QUARTER_TRUCK), (0.0, 0.6, 12.0, QUARTER_TRUCK), (0.0, 0.0, 80.0, None)],
+)
+def test_the_last_samples_are_as_good_as_the_others(footprint, cams, speed, vehicle):
+    """As a record one second longer gives them; under a dashpot with content up to the steps of the output."""
+    car = DASHPOT if vehicle is None else mf.quarter_car(**vehicle)
+    contact = car.contacts[0]
+    shape = mf.Contact(
+        position=0.0, stiffness=contact.stiffness, damping=contact.damping, footprint=footprint, cams=cams
+    )
+    car = mf.Vehicle(
+        mass=car.mass,
+        damping=car.damping,
+        stiffness=car.stiffness,
+        contact_map=car.contact_map,
+        contacts=[shape],
+        vertical=car.vertical,
+        dof_names=car.dof_names,
+    )
+    road = mf.realise(mf.IsoRoad.of_class("B", band=(0.02, 5.0)), length=3.5 * speed + 10.0, seed=5)
+    short, longer = (mf.simulate(PAVEMENT, car, road, speed=speed, duration=d) for d in (2.0, 3.0))
+    assert largest(short.contact_force.values, longer.contact_force.values) < 4e-4
+    tail = slice(-20, None)
+    apart = np.abs(short.contact_force.values[tail] - longer.contact_force.values[: len(short.time)][tail])
+    assert apart.max() < 4e-4 * np.abs(longer.contact_force.values).max()
+
+
+def test_past_the_end_of_a_profile_a_footprint_is_a_guess():
+    """It says so, and how much that may matter."""
+    car = mf.quarter_car(**QUARTER_TRUCK)
+    car = mf.on_paths(car, [0])
+    contact = mf.Contact(position=0.0, stiffness=3.7e6, footprint=0.5)
+    car = mf.Vehicle(
+        mass=car.mass,
+        damping=car.damping,
+        stiffness=car.stiffness,
+        contact_map=car.contact_map,
+        contacts=[contact],
+        vertical=car.vertical,
+        dof_names=car.dof_names,
+    )
+    figures, differences = [], []
+    for seed in range(12):
+        road = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 5.0)), length=40.0, seed=seed)
+        ends = road.stations <= 30.0 + 1e-9
+        cut = mf.Profile(road.stations[ends], road.columns[ends, 0])
+        travel = {"speed": 15.0, "duration": 2.0, "blend": 3.0}
+        known = mf.simulate(PAVEMENT, car, road, **travel)
+        with pytest.warns(mf.ValidityWarning, match=r"0\.25 m past the end of the profile"):
+            guessed = mf.simulate(PAVEMENT, car, cut, **travel)
+        found = json.loads(guessed.attrs["findings"])
+        figures += [one["figure"] for one in found if one["code"] == "profile_ends"]
+        differences.append(
+            max(largest(guessed[name].values, known[name].values) for name in ("contact_force", "acceleration"))
+        )
+        assert codes(known) == []
+    ratio = np.median(figures) / np.median(differences)
+    assert 1 / 3 < ratio < 3
+
+
+def test_a_road_that_begins_with_a_kink_under_a_dashpot():
+    """The force jumps; no step resolves that, and the finding says how much a finer one still changes."""
+    ramp = mf.Profile(np.linspace(-5.0, 60.0, 261), 0.01 * np.linspace(-5.0, 60.0, 261))
+    travel = {"speed": 10.0, "duration": 2.0, "blend": 0.0}
+    with pytest.warns(mf.ValidityWarning, match="goes on above"):
+        found = mf.simulate(mf.RigidGuideway(), DASHPOT, ramp, **travel)
+    finer = mf.simulate(mf.RigidGuideway(), DASHPOT, ramp, **travel, solved_step=found.attrs["solved_step"] / 16)
+    figure = next(f["figure"] for f in json.loads(found.attrs["findings"]) if f["code"] == "unresolved")
+    off = max(largest(found[name].values[1:], finer[name].values[1:]) for name in ("contact_force", "acceleration"))
+    assert off < 3 * figure
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+@pytest.mark.parametrize(("duration", "truncation"), [(2.0, 10.0), (0.5, 15.0), (0.05, 20.0), (5.0, 30.0)])
+def test_the_error_of_a_truncation_is_the_real_one(duration, truncation):
+    """Of the worst channel, root mean square over the record; estimated from above where it is small."""
+    road = mf.realise(mf.IsoRoad.of_class("A", band=(0.01, 6.0)), length=100.0, seed=2, start=-3.0)
+    truck = mf.half_car(**HALF_TRUCK)
+    cut, whole = (
+        mf.simulate(PAVEMENT, truck, road, speed=12.0, duration=duration, truncation=f) for f in (truncation, 1e4)
+    )
+    errors = []
+    for name in ("contact_force", "deflection", "motion", "acceleration"):
+        off, rms = ((values**2).mean(axis=0) ** 0.5 for values in (cut[name] - whole[name], whole[name]))
+        if name == "deflection":
+            rms = ((whole.deflection - whole.static_deflection) ** 2).mean("time") ** 0.5
+        size = rms.values
+        kept = size > 1e-3 * size.max()
+        errors.append((off.values[kept] / size[kept]).max())
+    assert max(errors) > 1e-3
+    assert cut.attrs["truncation_error"] == pytest.approx(max(errors), rel=0.02)
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_measures_are_of_the_response_as_it_was_solved():
+    """At 25 Hz three quarters of a wheel's acceleration cannot be seen; every measure stays what it is."""
+    car = mf.quarter_car(
+        body_mass=400.0,
+        wheel_mass=40.0,
+        suspension_stiffness=2e4,
+        suspension_damping=1.5e3,
+        tyre_stiffness=2e5,
+        tyre_damping=500.0,
+    )
+    road = mf.realise(mf.IsoRoad.of_class("C", band=(0.02, 4.0)), length=150.0, seed=1)
+    coarse, fine = (
+        mf.simulate(mf.RigidGuideway(), car, road, speed=20.0, duration=6.0, time_step=step)
+        for step in (2e-2, 1e-4)
+    )
+    assert "beyond_nyquist" in codes(coarse)
+    wanted = {(one.quantity, one.name): one.value for one in mf.assess(fine)}
+    for one in mf.assess(coarse):
+        assert one.value == pytest.approx(wanted[one.quantity, one.name], rel=5e-3, abs=1e-12), one
+
+
+@pytest.mark.filterwarnings("ignore:contact")
+@pytest.mark.parametrize("grade", [0.06, -0.02])
+def test_a_grade_changes_no_force(grade):
+    """A class A road on a slope loads the truck as the road alone does, and is a finding."""
+    road = mf.realise(mf.IsoRoad.of_class("A", band=(0.01, 4.0)), length=300.0, seed=1, start=-5.0)
+    steep = mf.Profile(road.stations, road.columns[:, 0] + grade * road.stations)
+    truck, travel = mf.half_car(**HALF_TRUCK), {"speed": 25.0, "duration": 10.0}
+    level = mf.simulate(PAVEMENT, truck, road, **travel)
+    with pytest.warns(mf.ValidityWarning, match="begins with a grade"):
+        sloping = mf.simulate(PAVEMENT, truck, steep, **travel)
+    assert level.attrs["grade"] == 0.0
+    assert sloping.attrs["grade"] == pytest.approx(grade, abs=1e-3)
+    np.testing.assert_allclose(
+        mf.dynamic_load_coefficient(sloping), mf.dynamic_load_coefficient(level), rtol=0.02, atol=0
+    )
+    with pytest.warns(mf.ValidityWarning, match="begins with a grade"):
+        stepped = mf.cdfm(
+            mf.finite_track(PAVEMENT, first=-45.0, last=60.0, element=0.25), truck, steep, speed=25.0, duration=1.0
+        )
+    assert stepped.attrs["grade"] == sloping.attrs["grade"]
+    blended = mf.simulate(PAVEMENT, truck, steep, **travel, blend=0.0)
+    assert blended.attrs["grade"] == 0.0
+
+
+@pytest.mark.parametrize("samples", [7, 8, 31])
+@pytest.mark.parametrize("lines", [5, 9, 17, 40])
+def test_what_folds_is_what_samples_see(samples, lines):
+    """Harmonics of a period, summed one by one at its samples."""
+    random = np.random.default_rng(samples + lines)
+    spectra = random.normal(size=(2, lines)) + 1j * random.normal(size=(2, lines))
+    spectra[:, 0] = spectra[:, 0].real
+    at = np.arange(samples) / samples
+    wanted = (
+        spectra[:, :1].real + 2 * (spectra[:, 1:] @ np.exp(2j * np.pi * np.outer(np.arange(1, lines), at))).real
+    )
+    if lines > samples // 2 + 1:
+        np.testing.assert_allclose(np.fft.irfft(folded(spectra, samples), samples) * samples, wanted, atol=1e-12)
+    line = Line(samples=samples, time_step=0.1, points=4 * samples)
+    assert line.size == 2 * samples + 1
