@@ -55,12 +55,20 @@ class Influence:
         All of the output.
     total : ndarray, shape (case, output)
         Energy of the whole output, contacts taken as independent.
+    alike : float
+        Share of the largest output's size that every output counts for at least; 0: each is of a kind of its own.
     """
 
     starts: IntArray
     added: Share
     whole: Share
     total: FloatArray
+    alike: float = 0.0
+
+    @property
+    def size(self) -> FloatArray:
+        """Energy against which a part of an output counts, shape (case, output)."""
+        return np.maximum(self.total, self.alike**2 * self.total.max(axis=1, initial=0.0, keepdims=True))
 
     def error(self, kept: int) -> float:
         """Greatest relative change of any output if the road is rigid from frequency number `kept` on."""
@@ -68,7 +76,7 @@ class Influence:
 
     def content(self, first: int) -> float:
         """Greatest share of any output, relative L2, that lies from frequency number `first` on."""
-        return float(np.sqrt(relative(self.whole.beyond(self.starts, first), self.total).max(initial=0.0)))
+        return float(np.sqrt(relative(self.whole.beyond(self.starts, first), self.size).max(initial=0.0)))
 
     def negligible_from(self, share: Share, allowed: float, magnitudes: FloatArray) -> int:
         """Find the lowest frequency from which on a share of the outputs is negligible.
@@ -87,7 +95,7 @@ class Influence:
         int
             Number of the frequency; the number of frequencies if there is no such frequency.
         """
-        limit, total = allowed**2, self.total[:, :, None]
+        limit, total = allowed**2, self.size[:, :, None]
         beyond = np.cumsum(share.energy[:, :, ::-1], axis=2)[:, :, ::-1]
         harmful_bands = np.flatnonzero((relative(beyond, total) > limit).any(axis=(0, 1)))
         if not harmful_bands.size:
@@ -114,7 +122,9 @@ def _bands(line: Line, truncation: float | None) -> IntArray:
     return starts[starts < line.size]
 
 
-def influence(system: Sized, line: Line, magnitudes: FloatArray, truncation: float | None) -> Influence:
+def influence(
+    system: Sized, line: Line, magnitudes: FloatArray, truncation: float | None, alike: float = 0.0
+) -> Influence:
     """Estimate outputs, and the guideway's part in them, from the system at the middle of each band.
 
     Over a band, √energy ≤ Σ_j |output per unit at port j| · √(energy at that port).
@@ -129,6 +139,8 @@ def influence(system: Sized, line: Line, magnitudes: FloatArray, truncation: flo
         Of the spectra of what drives it.
     truncation : float, optional
         Stated truncation [Hz]: one band begins beyond it.
+    alike : float
+        As in `Influence`.
 
     Returns
     -------
@@ -147,6 +159,7 @@ def influence(system: Sized, line: Line, magnitudes: FloatArray, truncation: flo
         added=_share(added, power),
         whole=_share(whole, power),
         total=np.einsum("cob,ncb->no", whole**2, power),
+        alike=alike,
     )
 
 

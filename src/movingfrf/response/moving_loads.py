@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 import movingfrf.results.findings as find
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
-from movingfrf.response.line import Line, require_record
-from movingfrf.response.sampling import excited
+from movingfrf.response.line import TRANSFORM, Given, Line, require_record
+from movingfrf.response.sampling import SAMPLING, Excited, excited, isolated_jumps
 from movingfrf.response.solve import solve
 from movingfrf.response.system import Prescribed
 from movingfrf.results.labels import attributes, labelled, turned
@@ -39,7 +41,9 @@ def moving_loads(
     guideway : Guideway
         The road or track.
     force : array_like, shape (time, load)
-        Forces [N], positive down. A force that is not zero at t = 0 is switched on at that instant.
+        Forces [N], positive down; cubic splines between their samples. A force that is not zero at t = 0 is
+        switched on at that instant. One that jumps later does so at an unknown instant between two samples: a
+        finding says what that may change. Loads of a scenario are switched at the instants that it says.
     positions : array_like, shape (load,)
         Where the forces act, in the frame that travels with them [m], positive ahead.
     speed : float
@@ -68,8 +72,8 @@ def moving_loads(
     Warns
     -----
     ValidityWarning
-        If the speed is near or above critical, the response has not decayed, or there is content beyond the
-        truncation.
+        If the speed is near or above critical, the response has not decayed, a force jumps between two samples, or
+        there is content beyond the truncation, or beyond what the steps of solution or output show.
 
     Examples
     --------
@@ -91,32 +95,101 @@ def moving_loads(
             check.not_negative("truncation", truncation, "Hz")
         if not check.faults and (len(forces) < 2 or not at.size or not points.size):
             check.refuse("force", "must have at least two samples, one load and one observation point")
+    prescribed = Forces(
+        given=lambda line: line.given(forces.T), sampled=forces, finest=time_step, jumps=isolated_jumps(forces)
+    )
+    return carried(
+        Prescribed(guideway=guideway, loads=at, points=points, speed=speed),
+        prescribed,
+        time_step=time_step,
+        truncation=truncation,
+        progress=progress,
+    )
+
+
+class Forces(NamedTuple):
+    """Prescribed forces over time."""
+
+    given: Callable[[Line], Given]  # (load, instant) [N]
+    sampled: FloatArray  # at the steps of the record, shape (time, load) [N]
+    finest: float = np.inf  # time within which they may change noticeably [s]
+    jumps: FloatArray | None = None  # by which each load jumps somewhere within a step, shape (load,) [N]
+
+
+def carried(
+    system: Prescribed,
+    forces: Forces,
+    *,
+    time_step: float,
+    truncation: float | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Deflection under prescribed forces: `moving_loads`, for functions of time.
+
+    Parameters
+    ----------
+    system : Prescribed
+        The guideway, where loads stand and deflections are observed, and their speed.
+    forces : Forces
+        The forces.
+    time_step : float
+        Step of the record [s].
+    truncation : float, optional
+        Frequency beyond which the response is left out [Hz].
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `moving_loads` returns it.
+
+    Raises
+    ------
+    ValueError
+        If memory does not hold the result.
+    SolveError
+        If a result is not finite.
+    """
+    guideway, speed, samples = system.guideway, system.speed, len(forces.sampled)
     # What settles here is the guideway, in a time that is short beside that of any vehicle.
-    settling = len(forces) * time_step
-    require_record(settling, settling, time_step, at.size + points.size)
-    line = Line(samples=len(forces), time_step=time_step, settling=settling)
-    system = Prescribed(guideway=guideway, loads=at, points=points, speed=speed)
+    settling = samples * time_step
+    require_record(settling, settling, time_step, system.loads.size + system.points.size)
+    line = Line(samples=samples, time_step=time_step, settling=settling)
     progress("sampling", 0.0)
-    # One case. Where no truncation is stated nothing is left out.
-    stated = np.inf if truncation is None else truncation
-    driven_by = excited(system, lambda line: line.given(forces.T[None]), line, time_step, truncation=stated)
+    # Where no truncation is stated nothing is left out.
+    driven_by = excited(
+        system,
+        forces.given,
+        line,
+        min(time_step, forces.finest),
+        truncation=np.inf if truncation is None else truncation,
+        wanted=SAMPLING.loads,
+    )
     yielding = solve(
         system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress
     ).deflection
     progress("histories", 0.0)
     response, error = driven_by.line.records(yielding), driven_by.truncation.error
+    for part, begins in zip(response.values, driven_by.begins, strict=True):
+        # Nothing moves before: what is left out of a spectrum comes as a ripple on both sides.
+        part[:, line.time <= begins + TRANSFORM.rounding * time_step] = 0.0
+    deflection = response.values.sum(axis=0)
     critical_speed = float(guideway.critical_speed)
     found = [
         *find.near_critical(abs(speed), critical_speed),
-        *find.not_decayed("deflection", response.wrapped, response.values),
+        *find.not_decayed("deflection", response.wrapped.sum(axis=0), deflection),
         *find.beyond_truncation(truncation or 0.0, error),
+        *find.jumps_within_a_step(_shifted(system, driven_by, forces, deflection), time_step),
+        *find.not_resolved(driven_by.left_out, driven_by.step),
+        *find.beyond_nyquist(yielding.sum(axis=0), line.padded // 2, time_step),
     ]
     values = {
         "time": line.time,
-        "load": at,
-        "point": points,
-        "force": forces,
-        "deflection": turned(response.values[0]),
+        "load": system.loads,
+        "point": system.points,
+        "force": forces.sampled,
+        "deflection": turned(deflection),
     }
     settings = attributes(
         "loaded",
@@ -132,3 +205,17 @@ def moving_loads(
         findings=found,
     )
     return labelled(values, settings)
+
+
+def _shifted(system: Prescribed, driven_by: Excited, forces: Forces, deflection: FloatArray) -> float:
+    """Tell what it changes, relative to the largest deflection of a point, if jumps come half a step later.
+
+    A spline through the samples takes a jump to the middle of its step.
+    """
+    if forces.jumps is None or not forces.jumps.any():
+        return 0.0
+    line, jumps, largest = driven_by.line, np.diag(forces.jumps)[forces.jumps > 0], np.abs(deflection).max(axis=-1)
+    impulses = (jumps[..., None] * driven_by.fade).astype(complex)
+    answer = solve(system, driven_by.omega, impulses, truncation=driven_by.truncation).deflection
+    changed = 0.5 * line.time_step * np.abs(line.records(answer).values).max(axis=-1)
+    return float(np.divide(changed, largest, out=np.zeros_like(changed), where=largest > 0).max())

@@ -177,7 +177,7 @@ def driven(
     # One case.
     driven_by = excited(
         system,
-        lambda line: Given(excitation.elevation(journey.speed * line.instants)[None]),
+        lambda line: Given(excitation.elevation(journey.speed * line.instants)),
         line_of(journey, vehicle),
         excitation.station / journey.speed,
         truncation=journey.truncation,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 import warnings
 from collections.abc import Iterable
@@ -23,7 +24,7 @@ class Thresholds:
     near_critical: float = 0.8  # share of the critical speed
     # What may wrap around from the end of the padding, and what a truncation may change, relative to a record.
     tolerated: float = 1e-3
-    # Share of the roughness that may lie in the highest tenth of the frequencies, as an amplitude.
+    # What of an output a record may not show between its samples, as a share of the root mean square.
     at_nyquist: float = 0.01
 
 
@@ -35,6 +36,7 @@ class Finding(NamedTuple):
 
     code: str
     message: str
+    figure: float = math.nan  # how much, as a share of what the message names; nan: it has no figure
 
 
 def contact_lost(total_force: FloatArray, time_step: float) -> list[Finding]:
@@ -98,24 +100,49 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
     ]
 
 
-def beyond_nyquist(roughness: ComplexArray, time_step: float) -> list[Finding]:
-    """Roughness spectra, shape (*case, contact, frequency), that reach up to the Nyquist frequency."""
-    lines = roughness.shape[-1]
-    squared = np.arange(lines, dtype=float) ** 2
-    first = int(0.9 * lines)
-    share = 0.0
-    for spectrum in roughness.reshape(-1, lines):
-        energy = (spectrum.real**2 + spectrum.imag**2) * squared
-        if energy.any():
-            share = max(share, float(np.sqrt(energy[first:].sum() / energy.sum())))
+def beyond_nyquist(spectra: ComplexArray, shown: int, time_step: float) -> list[Finding]:
+    """Spectra of like outputs, (output, frequency), of which a record shows the first `shown` frequencies."""
+    energy = spectra.real**2 + spectra.imag**2
+    beyond, whole = energy[:, shown + 1 :].sum(axis=-1).max(initial=0.0), energy.sum(axis=-1).max(initial=0.0)
+    share = float(np.sqrt(beyond / whole)) if whole > 0 else 0.0
     if share <= THRESHOLDS.at_nyquist:
         return []
     return [
         Finding(
             "beyond_nyquist",
-            f"{share:.1%} of the slope of the road, as seen by a contact, lies in the highest tenth of the "
-            f"frequencies that a step of {time_step:g} s resolves (up to {0.5 / time_step:g} Hz); "
-            "a shorter time step, or a smoother profile, is needed",
+            f"{share:.1%} of the root mean square of an output lies above {0.5 / time_step:g} Hz, which steps "
+            f"of {time_step:g} s do not show; the samples are right, but more happens between them. A shorter "
+            "time step shows it",
+            share,
+        )
+    ]
+
+
+def not_resolved(left_out: float, solved_step: float) -> list[Finding]:
+    """Say what is left out, relative to a record, although it was solved in steps as fine as are allowed [s]."""
+    if left_out <= THRESHOLDS.tolerated:
+        return []
+    return [
+        Finding(
+            "not_resolved",
+            f"steps of {solved_step:.2g} s, the finest that were tried, leave out {left_out:.1e} of the root mean "
+            "square of an output, most of it where something begins or ends abruptly",
+            left_out,
+        )
+    ]
+
+
+def jumps_within_a_step(change: float, time_step: float) -> list[Finding]:
+    """Say what it may change, relative to the largest value, that a force jumps within a step [s]."""
+    if change <= THRESHOLDS.tolerated:
+        return []
+    return [
+        Finding(
+            "jump_within_a_step",
+            f"a force jumps between two samples, {time_step:g} s apart, at an instant that they do not tell; "
+            f"half a step later changes the deflection by up to {change:.1e} of its largest value. A shorter step "
+            "would tell, or a scenario, whose loads are switched at stated instants",
+            change,
         )
     ]
 
@@ -129,4 +156,7 @@ def announced(found: Iterable[Finding]) -> str:
     found = list(found)
     for finding in found:
         warnings.warn(finding.message, ValidityWarning, stacklevel=level)
-    return json.dumps([finding._asdict() for finding in found])
+    # Not a number is no JSON.
+    return json.dumps(
+        [{name: value for name, value in finding._asdict().items() if value == value} for finding in found]
+    )
