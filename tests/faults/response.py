@@ -35,9 +35,9 @@ FAULTS = [
     ),
     Fault(
         "load's road that does not fade",
-        "response/system.py",
-        "truncation.admitted(np.moveaxis(frf, 0, -1), omega)",
-        "np.moveaxis(frf, 0, -1)",
+        "response/moving_loads.py",
+        "Truncation(frequency=truncation).taper(driven_by.omega)",
+        "(driven_by.omega.real <= 2 * np.pi * truncation)",
     ),
     Fault("whole weight at the start", "response/line.py", "padded[:, 0] *= 0.5", "padded[:, 0] *= 1.0"),
     Fault(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import scipy.fft
@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory
 from movingfrf._basics.checks import checking
 from movingfrf._basics.smooth import ONWARD, memory, onward, smooth_step
+
+
+Values = TypeVar("Values", FloatArray, ComplexArray)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -204,29 +207,35 @@ class Line:
 
         Returns
         -------
-        ndarray, shape (part, *case, port, frequency)
-            Spectra of its parts, see `Given.begins`, in the unit of the record times second.
+        ndarray, shape (*case, port, frequency)
+            Spectra, in the unit of the record times second.
         """
-        return self._along(given, self.decay)
+        return together(self.parts(given))
+
+    def parts(self, given: Given) -> ComplexArray:
+        """Transform part by part, see `Given.begins`, what drives a system: (part, *case, port, frequency)."""
+        return self._parts(given, self.decay)
 
     def magnitudes(self, given: Given) -> FloatArray:
         """Magnitudes of the spectra without the window: what is early counts no more than what is late."""
-        return np.abs(self._along(given, 0.0).sum(axis=0))
+        return np.abs(together(self._parts(given, 0.0)))
 
-    def _along(self, given: Given, decay: float) -> ComplexArray:
+    def _parts(self, given: Given, decay: float) -> ComplexArray:
         """Take abrupt changes out as pulses, transform the rest, and add the spectra of the pulses."""
         if not given.abrupt:
             return self._transformed(given.values, decay)[None]
         instants, rest, begins = self.instants, given.values.copy(), given.begins
-        spectra = np.zeros((len(begins), *rest.shape[:-1], self.size), complex)
         rate = max(TRANSFORM.pulse * self.solved, TRANSFORM.pulse_ends) / self.period
-        s = 1j * self.omega().real + decay
-        for change in given.abrupt:
-            pulse, after = Pulse.of(change.jumps, rate), int(np.searchsorted(instants, change.time))
+        pulses = [Pulse.of(change.jumps, rate) for change in given.abrupt]
+        for change, pulse in zip(given.abrupt, pulses, strict=True):
+            after = int(np.searchsorted(instants, change.time))
             rest[..., change.port, after:] -= pulse.values(instants[after:] - change.time)
-            spectra[begins.index(change.time)][..., change.port, :] += np.exp(-change.time * s) * pulse.spectrum(s)
-        spectra[0] += self._transformed(rest, decay)
-        return spectra
+        first = self._transformed(rest, decay)[None]
+        parts = np.concatenate([first, *[np.zeros_like(first)] * (len(begins) - 1)]) if len(begins) > 1 else first
+        s = 1j * self.omega().real + decay
+        for change, pulse in zip(given.abrupt, pulses, strict=True):
+            parts[begins.index(change.time)][..., change.port, :] += np.exp(-change.time * s) * pulse.spectrum(s)
+        return parts
 
     def _transformed(self, values: FloatArray, decay: float) -> ComplexArray:
         """Let values fade out and transform them; (*case, port, instant) to (…, frequency)."""
@@ -288,6 +297,12 @@ class Line:
             np.multiply(periodic[:, : self.samples], growth, out=values[some])
             wrapped[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / self.time_step
         return Histories(values.reshape(*ports, self.samples), wrapped.reshape(ports))
+
+
+def together(parts: Values) -> Values:
+    """Sum parts, (part, …), which need no memory if there is but one."""
+    whole: Values = parts[0] if len(parts) == 1 else parts.sum(axis=0)
+    return whole
 
 
 def folded(spectra: ComplexArray, samples: int) -> ComplexArray:

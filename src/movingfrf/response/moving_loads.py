@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import movingfrf.results.findings as find
-from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
-from movingfrf.response.line import TRANSFORM, Given, Line, require_record
+from movingfrf.response.line import TRANSFORM, Given, Line, require_record, together
 from movingfrf.response.sampling import SAMPLING, Excited, excited, isolated_jumps
 from movingfrf.response.solve import solve
 from movingfrf.response.system import Prescribed
+from movingfrf.response.truncation import Truncation
 from movingfrf.results.labels import attributes, labelled, turned
 
 if TYPE_CHECKING:
@@ -157,32 +158,27 @@ def carried(
     require_record(settling, settling, time_step, system.loads.size + system.points.size)
     line = Line(samples=samples, time_step=time_step, settling=settling)
     progress("sampling", 0.0)
-    # Where no truncation is stated nothing is left out.
-    driven_by = excited(
-        system,
-        forces.given,
-        line,
-        min(time_step, forces.finest),
-        truncation=np.inf if truncation is None else truncation,
-        wanted=SAMPLING.loads,
-    )
-    yielding = solve(
-        system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress
-    ).deflection
+    # What changes sooner than the finest steps tell counts as abrupt.
+    step = min(time_step, max(forces.finest, SAMPLING.per_station * line.period / SAMPLING.most))
+    driven_by = excited(system, forces.given, line, step, truncation=np.inf, wanted=SAMPLING.loads)
+    yielding = solve(system, driven_by.omega, driven_by.spectra, progress=progress).deflection
     progress("histories", 0.0)
-    response, error = driven_by.line.records(yielding), driven_by.truncation.error
-    for part, begins in zip(response.values, driven_by.begins, strict=True):
-        # Nothing moves before: what is left out of a spectrum comes as a ripple on both sides.
-        part[:, line.time <= begins + TRANSFORM.rounding * time_step] = 0.0
-    deflection = response.values.sum(axis=0)
+    deflection, wrapped = _histories(driven_by, yielding)
+    error = 0.0
+    if truncation is not None:
+        # What it leaves out is known: nothing else would tell how much that is.
+        kept = Truncation(frequency=truncation).taper(driven_by.omega)
+        left_out, _ = _histories(driven_by, yielding * (1.0 - kept))
+        error = _relative(np.sqrt((left_out**2).mean(axis=-1)), np.sqrt((deflection**2).mean(axis=-1)))
+        deflection, yielding = deflection - left_out, yielding * kept
     critical_speed = float(guideway.critical_speed)
     found = [
         *find.near_critical(abs(speed), critical_speed),
-        *find.not_decayed("deflection", response.wrapped.sum(axis=0), deflection),
+        *find.not_decayed("deflection", wrapped, deflection),
         *find.beyond_truncation(truncation or 0.0, error),
         *find.jumps_within_a_step(_shifted(system, driven_by, forces, deflection), time_step),
         *find.not_resolved(driven_by.left_out, driven_by.step),
-        *find.beyond_nyquist(yielding.sum(axis=0), line.padded // 2, time_step),
+        *find.beyond_nyquist(together(yielding), line.padded // 2, time_step),
     ]
     values = {
         "time": line.time,
@@ -207,6 +203,16 @@ def carried(
     return labelled(values, settings)
 
 
+def _histories(driven_by: Excited, yielding: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """Deflection (point, time) of all parts together, and what of it wraps around (point,)."""
+    line = driven_by.line
+    parts, wrapped = line.records(yielding)
+    for part, begins in zip(parts, driven_by.begins, strict=True):
+        # Nothing moves before: what is left out of a spectrum comes as a ripple on both sides.
+        part[:, line.time <= begins + TRANSFORM.rounding * line.time_step] = 0.0
+    return together(parts), wrapped.sum(axis=0)
+
+
 def _shifted(system: Prescribed, driven_by: Excited, forces: Forces, deflection: FloatArray) -> float:
     """Tell what it changes, relative to the largest deflection of a point, if jumps come half a step later.
 
@@ -214,8 +220,14 @@ def _shifted(system: Prescribed, driven_by: Excited, forces: Forces, deflection:
     """
     if forces.jumps is None or not forces.jumps.any():
         return 0.0
-    line, jumps, largest = driven_by.line, np.diag(forces.jumps)[forces.jumps > 0], np.abs(deflection).max(axis=-1)
+    line, jumps = driven_by.line, np.diag(forces.jumps)[forces.jumps > 0]
     impulses = (jumps[..., None] * driven_by.fade).astype(complex)
-    answer = solve(system, driven_by.omega, impulses, truncation=driven_by.truncation).deflection
-    changed = 0.5 * line.time_step * np.abs(line.records(answer).values).max(axis=-1)
-    return float(np.divide(changed, largest, out=np.zeros_like(changed), where=largest > 0).max())
+    answers = line.records(solve(system, driven_by.omega, impulses).deflection).values
+    # Whether several jump at once is not asked.
+    changed = 0.5 * line.time_step * np.sqrt((np.abs(answers).max(axis=-1) ** 2).sum(axis=0))
+    return _relative(changed, np.abs(deflection).max(axis=-1))
+
+
+def _relative(part: FloatArray, whole: FloatArray) -> float:
+    """Largest quotient of a part and the whole at any point."""
+    return float(np.divide(part, whole, out=np.zeros_like(part), where=whole > 0).max())

@@ -64,8 +64,8 @@ class Sampling:
     fades_abrupt: float = 1.0  # [0.5 to 2]
     # A sampled force jumps where its third differences are those of a jump, up to this share of it, and no others
     # are within so many steps.
-    like: float = 0.3  # [0.1 to 0.4]
-    alone: int = 5  # [3 to 8]
+    like: float = 0.2  # [0.1 to 0.3]
+    alone: int = 6  # [4 to 8]
 
 
 SAMPLING = Sampling()
@@ -158,7 +158,7 @@ def excited(
             ends = min(passed, found.negligible_from(found.whole, at_once, magnitudes))
     fades = SAMPLING.fades_abrupt if driving.abrupt else SAMPLING.fades
     count = min(int(ends * (1 + fades)) + 2, line.size)
-    spectra = line.spectra(driving)[..., :count]
+    spectra = line.parts(driving)[..., :count]
     fade = np.ones(count)
     if count < line.size:
         # What a sharp cut discards would ring on, and the window raises what comes late.

@@ -340,4 +340,4 @@ def _switched(history: History, on: float, off: float | None, ramp: float) -> Hi
         # Derivatives are asked for where it begins and ends: there they are zero.
         return history.smooth(time, order) * share
 
-    return replace(within, smooth=ramped)
+    return replace(within, smooth=ramped, finest=min(history.finest, 0.25 * ramp))
