@@ -11,7 +11,7 @@ FAULTS = [
         "jump of the value alone",
         "response/line.py",
         "value, slope, bend = jumps",
-        "value, slope, bend = jumps * [[1], [0], [0]]",
+        "value, slope, bend = jumps[0], 0 * jumps[1], 0 * jumps[2]",
     ),
     Fault("ripple before the load", "response/moving_loads.py", "line.time_step] = 0.0", "line.time_step] *= 1.0"),
     Fault("load seen before it has passed", "response/sampling.py", "passed: float = 20.0", "passed: float = 1.0"),
