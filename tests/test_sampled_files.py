@@ -132,11 +132,12 @@ def test_a_scenario_runs_on_a_record_from_matlab(tmp_path):
     np.testing.assert_array_equal(scenario.run().contact_force.values, direct.contact_force.values)
 
 
-def test_loads_on_a_record_are_the_same_call_as_in_python(tmp_path):
+def test_loads_on_a_record_are_those_that_python_takes(tmp_path):
     mf.write_sampled_guideway(RECORD, tmp_path / "road.npz")
     scenario = parse_scenario(LOADS, folder=tmp_path)
     direct = mf.moving_loads(RECORD, scenario.case.forces, [0.0], speed=10.0, observe=[0.0, -2.0])
-    np.testing.assert_array_equal(scenario.run().deflection.values, direct.deflection.values)
+    wanted = direct.deflection.values
+    np.testing.assert_allclose(scenario.run().deflection.values, wanted, atol=1e-5 * np.abs(wanted).max())
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,7 @@ SELECTION = [
     "tests/laws/test_guideways.py",
     "tests/laws/test_properties.py",
     "tests/laws/test_truncation.py",
+    "tests/laws/test_switched_loads.py",
     "tests/laws/test_cases.py",
     "tests/laws/test_random.py",
     "tests/laws/test_random_statistics.py",

@@ -6,7 +6,7 @@ from tests.faults.fault import Fault
 
 FAULTS = [
     # Spectra and time.
-    Fault("window sign", "response/line.py", "np.exp(-self.decay", "np.exp(self.decay"),
+    Fault("window sign", "response/line.py", "np.exp(-decay * step", "np.exp(decay * step"),
     Fault("window not undone", "response/line.py", "np.exp(self.decay", "np.exp(0.0 * self.decay"),
     Fault("line on the real axis", "response/line.py", "- 1j * self.decay", "+ 0j * self.decay"),
     Fault(
@@ -35,18 +35,20 @@ FAULTS = [
     ),
     Fault(
         "load's road that does not fade",
-        "response/system.py",
-        "truncation.admitted(self._frf(omega), omega)",
-        "self._frf(omega)",
+        "response/moving_loads.py",
+        "Truncation(frequency=truncation).taper(driven_by.omega)",
+        "(driven_by.omega.real <= 2 * np.pi * truncation)",
     ),
     Fault("what folds is mirrored", "response/line.py", "+= np.conj(downward[:, ::-1])", "+= downward[:, ::-1]"),
     Fault("what folds comes once", "response/line.py", "upward[:, within] *= 2.0", "pass"),
-    Fault("images fold", "response/sampling.py", "highest <= negligible:", "True:"),
+    Fault(
+        "images fold", "response/sampling.py", "enough = highest <= wanted.negligible and (", "enough = True or ("
+    ),
     Fault(
         "a sharp end of the content",
         "response/sampling.py",
-        "spectra[..., ends:] *= 1.0 - smooth_step(np.arange(1, fading + 1) / fading)",
-        "pass",
+        "fade = 1.0 - smooth_step((np.arange(count) - ends + 1) / max(count - ends, 1))",
+        "fade = np.ones(count)",
     ),
     Fault(
         "sampled at the output's step",
@@ -57,8 +59,8 @@ FAULTS = [
     Fault(
         "early counts more than late",
         "response/line.py",
-        "np.full(self.solved, self.period / self.solved)",
-        "np.exp(-self.decay * self.period / self.solved * np.arange(self.solved))",
+        "np.abs(together(self._parts(given, 0.0)))",
+        "np.abs(together(self._parts(given, self.decay)))",
     ),
     Fault(
         "nothing is unresolved",

@@ -41,6 +41,18 @@ def test_prescribed_loads_end_as_well_as_they_begin():
     assert (error[-1] < 1.5 * np.median(error, axis=0)).all()
 
 
+def test_what_a_truncation_leaves_out_of_prescribed_loads_does_not_ring_on():
+    """As much beyond the truncation as before it for two seconds, then nothing."""
+    time = 1e-3 * np.arange(12_000)
+    force = forces.random_sum(rms=1e4, lowest=1.0, highest=100.0, count=400, seed=1, ramp=0.5, switch_off=2.0)(time)
+    travel = {"force": force[:, None], "positions": [0.0], "speed": 10.0}
+    whole = mf.moving_loads(ROAD, **travel).deflection.values
+    with pytest.warns(mf.ValidityWarning, match="truncation"):
+        cut = mf.moving_loads(ROAD, **travel, truncation=50.0).deflection.values
+    error = by_seconds(cut - whole)
+    assert error[3:].max() < 1e-3 * error.max()
+
+
 @pytest.mark.parametrize("truncation", [10.0, 70.0, 490.0, 600.0])
 def test_compliance_falls_smoothly_from_one_to_nothing(truncation):
     omega, cut = Line(samples=20_000, time_step=1e-3).omega(), Truncation(frequency=truncation)

@@ -55,6 +55,8 @@ class Influence:
         All of the output.
     total : ndarray, shape (case, output)
         Energy of the whole output, contacts taken as independent.
+    alike : float
+        Share of the largest output's size that every output counts for at least; 0: each is of a kind of its own.
     lines : int
         Number of the frequencies.
     """
@@ -63,11 +65,17 @@ class Influence:
     added: Share
     whole: Share
     total: FloatArray
+    alike: float
     lines: int
+
+    @property
+    def size(self) -> FloatArray:
+        """Energy against which a part of an output counts, shape (case, output)."""
+        return np.maximum(self.total, self.alike**2 * self.total.max(axis=1, initial=0.0, keepdims=True))
 
     def error(self, kept: int, end: int) -> float:
         """Greatest relative change of any output if the road is rigid from frequency number `kept` to `end`."""
-        return float(np.sqrt(relative(self.added.between(self.starts, kept, end), self.total).max(initial=0.0)))
+        return float(np.sqrt(relative(self.added.between(self.starts, kept, end), self.size).max(initial=0.0)))
 
     def content(self, first: int) -> float:
         """Greatest share of any output, relative L2, that lies from frequency number `first` on."""
@@ -75,7 +83,7 @@ class Influence:
 
     def shares(self, first: int, end: int) -> FloatArray:
         """Greatest share of each output, relative L2, from frequency number `first` to `end`; shape (output,)."""
-        return np.sqrt(relative(self.whole.between(self.starts, first, end), self.total).max(axis=0))
+        return np.sqrt(relative(self.whole.between(self.starts, first, end), self.size).max(axis=0))
 
     def negligible_from(self, share: Share, allowed: float, magnitudes: FloatArray) -> int:
         """Find the lowest frequency from which on a share of the outputs is negligible.
@@ -94,7 +102,7 @@ class Influence:
         int
             Number of the frequency; the number of frequencies if there is no such frequency.
         """
-        limit, total = allowed**2, self.total[:, :, None]
+        limit, total = allowed**2, self.size[:, :, None]
         beyond = np.cumsum(share.energy[:, :, ::-1], axis=2)[:, :, ::-1]
         harmful_bands = np.flatnonzero((relative(beyond, total) > limit).any(axis=(0, 1)))
         if not harmful_bands.size:
@@ -121,7 +129,9 @@ def _bands(line: Line, truncation: float | None) -> IntArray:
     return starts[starts < line.size]
 
 
-def influence(system: Sized, line: Line, magnitudes: FloatArray, truncation: float | None) -> Influence:
+def influence(
+    system: Sized, line: Line, magnitudes: FloatArray, truncation: float | None, alike: float = 0.0
+) -> Influence:
     """Estimate outputs, and the guideway's part in them, from the system at the middle of each band.
 
     Over a band, √energy ≤ Σ_j |output per unit at port j| · √(energy at that port).
@@ -136,6 +146,8 @@ def influence(system: Sized, line: Line, magnitudes: FloatArray, truncation: flo
         Of the spectra of what drives it.
     truncation : float, optional
         Stated truncation [Hz]: one band begins beyond it.
+    alike : float
+        As in `Influence`.
 
     Returns
     -------
@@ -163,7 +175,7 @@ def influence(system: Sized, line: Line, magnitudes: FloatArray, truncation: flo
             share.energy[..., here] = np.einsum("cob,ncb->nob", gain, np.sqrt(power[..., here])) ** 2
         total += np.einsum("cob,cob,ncb->no", gains[-1], gains[-1], power[..., here])
         first += some.size
-    return Influence(starts=starts, added=shares[0], whole=shares[1], total=total, lines=line.size)
+    return Influence(starts=starts, added=shares[0], whole=shares[1], total=total, alike=alike, lines=line.size)
 
 
 def relative(part: FloatArray, whole: FloatArray) -> FloatArray:

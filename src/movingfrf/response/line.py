@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import scipy.fft
@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory
 from movingfrf._basics.checks import checking
 from movingfrf._basics.smooth import memory, onward, smooth_step
+
+Values = TypeVar("Values", FloatArray, ComplexArray)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,10 +28,12 @@ class Transform:
     fades: float = 0.25  # [0.15 to 0.4]
     # So many samples before the end of a record tell how it goes on.
     lately: int = 4096  # [256 to 65 536]
-    # A jump at the start is taken out as a pulse whose rate of decay is this share of a step's inverse, at least so
+    # An abrupt change is taken out as a pulse whose rate of decay is this share of a step's inverse, at least so
     # many times that of the period.
     pulse: float = 0.01  # [1e-3 to 0.05]
     pulse_ends: float = 30.0  # [25 to 50]
+    # An abrupt change so near to a sample, as a share of the step, falls on it; one that is so small is none.
+    rounding: float = 1e-6  # [1e-9 to 1e-5]
     # Channels transformed at a time: as many as a processor's vector holds numbers.
     together: int = 4  # [1 to 64: time only]
     # Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
@@ -40,11 +44,24 @@ class Transform:
 TRANSFORM = Transform()
 
 
-class Given(NamedTuple):
-    """What drives a system, at the instants of a line, and how it begins."""
+class Abrupt(NamedTuple):
+    """An abrupt change of what drives a port."""
 
-    values: FloatArray  # (*case, port, instant)
-    onset: FloatArray | None = None  # (3, *case, port): value, rate and its rate at t = 0, where it begins abruptly
+    time: float  # from when on [s]
+    port: int
+    jumps: FloatArray  # (3, *case): of the value, its rate and the rate of that
+
+
+class Given(NamedTuple):
+    """What drives a system, at the instants of a line, and where it changes abruptly."""
+
+    values: FloatArray  # (*case, port, instant); where it changes abruptly, the value after
+    abrupt: tuple[Abrupt, ...] = ()
+
+    @property
+    def begins(self) -> tuple[float, ...]:
+        """From when on each part of it acts [s]: what begins at t = 0, and what later changes abruptly add."""
+        return (0.0, *sorted({change.time for change in self.abrupt} - {0.0}))
 
 
 class Histories(NamedTuple):
@@ -165,13 +182,24 @@ class Line:
         slope, curvature = (spline(known[-1:], order) for order in (1, 2))
         after = instants[within:] - known[-1]
         values[..., within:] = records[..., -1:] + onward(after, slope, curvature, length[..., None])
-        return Given(values, np.stack([spline(0.0, order) for order in range(3)]))
+        onset = np.stack([spline(0.0, order) for order in range(3)])
+        # What is rounding, in the course of a step, is no change.
+        size = np.abs(onset) * (self.time_step ** np.arange(3.0)).reshape(-1, *[1] * (onset.ndim - 1))
+        onset[size <= TRANSFORM.rounding * np.abs(records).max(axis=-1)] = 0.0
+        abrupt = (Abrupt(0.0, port, onset[..., port]) for port in range(onset.shape[-1]))
+        return Given(values, tuple(change for change in abrupt if change.jumps.any()))
+
+    def clear(self, given: Given) -> float:
+        """Shortest time from an abrupt change to the next sample of the record [s]; inf if nothing changes so."""
+        steps = np.array([change.time for change in given.abrupt]) / self.time_step
+        gap = (np.ceil(steps) - steps)[steps < self.samples]
+        return float(np.where(gap > TRANSFORM.rounding, gap, 1.0).min(initial=np.inf)) * self.time_step
 
     def spectra(self, given: Given) -> ComplexArray:
         """Transform what drives a system and is zero before t = 0.
 
-        Past the end of the record it fades out, within the padding. How it begins is exact in the spectrum where
-        that is told; a jump that is not told is centred at t = 0.
+        Past the end of the record it fades out, within the padding. Abrupt changes are exact in the spectrum where
+        they are told; a jump that is not told is centred at t = 0.
 
         Parameters
         ----------
@@ -183,27 +211,40 @@ class Line:
         ndarray, shape (*case, port, frequency)
             Spectra, in the unit of the record times second.
         """
-        step = self.period / self.solved
-        pulse = None
-        if given.onset is not None and given.onset.any():
-            pulse = Pulse.of(given.onset, max(TRANSFORM.pulse / step, TRANSFORM.pulse_ends / self.period))
-        spectra = self._transformed(given.values, step * np.exp(-self.decay * step * np.arange(self.solved)), pulse)
-        if pulse is not None:
-            spectra += pulse.spectrum(1j * self.omega())
-        return spectra
+        return together(self.parts(given))
 
-    def magnitudes(self, values: FloatArray) -> FloatArray:
+    def parts(self, given: Given) -> ComplexArray:
+        """Transform part by part, see `Given.begins`, what drives a system: (part, *case, port, frequency)."""
+        return self._parts(given, self.decay)
+
+    def magnitudes(self, given: Given) -> FloatArray:
         """Magnitudes of the spectra without the window: what is early counts no more than what is late."""
-        return np.abs(self._transformed(values, np.full(self.solved, self.period / self.solved)))
+        return np.abs(together(self._parts(given, 0.0)))
 
-    def _transformed(self, values: FloatArray, window: FloatArray, pulse: Pulse | None = None) -> ComplexArray:
-        """Let values fade out, take out a pulse, and transform; (*case, port, instant) to (…, frequency)."""
-        instants, end = self.instants, self.samples * self.time_step
+    def _parts(self, given: Given, decay: float) -> ComplexArray:
+        """Take abrupt changes out as pulses, transform the rest, and add the spectra of the pulses."""
+        if not given.abrupt:
+            return self._transformed(given.values, decay)[None]
+        instants, rest, begins = self.instants, given.values.copy(), given.begins
+        rate = max(TRANSFORM.pulse * self.solved, TRANSFORM.pulse_ends) / self.period
+        pulses = [Pulse.of(change.jumps, rate) for change in given.abrupt]
+        for change, pulse in zip(given.abrupt, pulses, strict=True):
+            after = int(np.searchsorted(instants, change.time))
+            rest[..., change.port, after:] -= pulse.values(instants[after:] - change.time)
+        first = self._transformed(rest, decay)[None]
+        parts = np.concatenate([first, *[np.zeros_like(first)] * (len(begins) - 1)]) if len(begins) > 1 else first
+        s = 1j * self.omega().real + decay
+        for change, pulse in zip(given.abrupt, pulses, strict=True):
+            parts[begins.index(change.time)][..., change.port, :] += np.exp(-change.time * s) * pulse.spectrum(s)
+        return parts
+
+    def _transformed(self, values: FloatArray, decay: float) -> ComplexArray:
+        """Let values fade out and transform them; (*case, port, instant) to (…, frequency)."""
+        instants, end, step = self.instants, self.samples * self.time_step, self.period / self.solved
         fading = int(np.searchsorted(instants, end))
         fade = 1.0 - smooth_step((instants[fading:] - end) / (TRANSFORM.fades * (self.period - end)))
+        window = step * np.exp(-decay * step * np.arange(self.solved))
         rows = values.reshape(-1, instants.size)
-        pulses = None if pulse is None else pulse._replace(coefficients=pulse.coefficients.reshape(3, -1))
-        every = np.arange(self.solved) * (self.period / self.solved)
         spectra, together = np.empty((len(rows), self.size), complex), TRANSFORM.together
         for first in range(0, len(rows), together):
             some = slice(first, first + together)
@@ -211,8 +252,6 @@ class Line:
             padded = np.zeros((len(block), self.solved))
             padded[:, : instants.size] = block
             padded[:, fading : instants.size] *= fade
-            if pulses is not None:
-                padded -= pulses._replace(coefficients=pulses.coefficients[:, some]).values(every)
             # A jump at t = 0 is centred there: half of its first sample lies before it.
             padded[:, 0] *= 0.5
             padded *= window
@@ -269,6 +308,12 @@ class Line:
         return Histories(values.reshape(*ports, samples), wrapped.reshape(ports))
 
 
+def together(parts: Values) -> Values:
+    """Sum parts, (part, …), which need no memory if there is but one."""
+    whole: Values = parts[0] if len(parts) == 1 else parts.sum(axis=0)
+    return whole
+
+
 def folded(spectra: ComplexArray, samples: int) -> ComplexArray:
     """Fold what a period of so many samples cannot tell from lower frequencies onto these.
 
@@ -314,25 +359,25 @@ def folded(spectra: ComplexArray, samples: int) -> ComplexArray:
 
 
 class Pulse(NamedTuple):
-    """(c₀ + c₁ t + c₂ t²) e^{−at} from t = 0 on: an abrupt beginning whose transform is known."""
+    """(c₀ + c₁ t + c₂ t²) e^{−at} from t = 0 on: an abrupt change whose transform is known."""
 
-    coefficients: FloatArray  # (3, *row)
+    coefficients: FloatArray  # (3, *case)
     rate: float  # a [1/s]
 
     @classmethod
-    def of(cls, onset: FloatArray, rate: float) -> Pulse:
-        """Take value, first and second derivative at t = 0, shape (3, *row)."""
-        value, slope, bend = onset
+    def of(cls, jumps: FloatArray, rate: float) -> Pulse:
+        """Take value, first and second derivative at t = 0, shape (3, *case)."""
+        value, slope, bend = jumps
         linear = slope + rate * value
         return cls(np.stack([value, linear, 0.5 * (bend + 2 * rate * linear - rate**2 * value)]), rate)
 
     def values(self, time: FloatArray) -> FloatArray:
-        """Values at some times [s], shape (*row, time)."""
+        """Values at some times [s], shape (*case, time)."""
         constant, linear, square = self.coefficients[..., None]
         return (constant + time * (linear + time * square)) * np.exp(-self.rate * time)
 
     def spectrum(self, s: ComplexArray) -> ComplexArray:
-        """∫ … e^{−st} dt, shape (*row, frequency)."""
+        """∫ … e^{−st} dt, shape (*case, frequency)."""
         constant, linear, square = self.coefficients[..., None]
         inverse = 1.0 / (s + self.rate)
         return inverse * (constant + inverse * (linear + 2.0 * inverse * square))

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 import movingfrf.results.findings as find
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, findings_of, require_guideway, told
-from movingfrf.response.line import Line, require_record
-from movingfrf.response.sampling import excited
+from movingfrf.response.line import TRANSFORM, Given, Line, require_record, together
+from movingfrf.response.sampling import SAMPLING, Excited, excited
 from movingfrf.response.solve import solve
 from movingfrf.response.system import Prescribed
+from movingfrf.response.truncation import Truncation
 from movingfrf.results.labels import attributes, labelled, turned
 
 if TYPE_CHECKING:
@@ -39,7 +42,9 @@ def moving_loads(
     guideway : Guideway
         The road or track.
     force : array_like, shape (time, load)
-        Forces [N], positive down. A force that is not zero at t = 0 is switched on at that instant.
+        Forces [N], positive down; cubic splines between their samples. A force that is not zero at t = 0 is
+        switched on at that instant. One that jumps later does so at an unknown instant between two samples: a
+        finding says what that may change. Loads of a scenario are switched at the instants that it says.
     positions : array_like, shape (load,)
         Where the forces act, in the frame that travels with them [m], positive ahead.
     speed : float
@@ -68,8 +73,8 @@ def moving_loads(
     Warns
     -----
     ValidityWarning
-        If the speed is near or above critical, the response has not decayed, or there is content beyond the
-        truncation.
+        If the speed is near or above critical, the response has not decayed, a force jumps between two samples, or
+        there is content beyond the truncation, or beyond what the steps of solution or output show.
 
     Examples
     --------
@@ -91,33 +96,97 @@ def moving_loads(
             truncation = check.not_negative("truncation", truncation, "Hz")
         if not check.faults and (len(forces) < 2 or not at.size or not points.size):
             check.refuse("force", "must have at least two samples, one load and one observation point")
+    prescribed = Forces(
+        given=lambda line: line.given(forces.T), sampled=forces, finest=time_step, jumps=isolated_jumps(forces)
+    )
+    return carried(
+        Prescribed(guideway=guideway, loads=at, points=points, speed=speed),
+        prescribed,
+        time_step=time_step,
+        truncation=truncation,
+        progress=progress,
+    )
+
+
+class Forces(NamedTuple):
+    """Prescribed forces over time."""
+
+    given: Callable[[Line], Given]  # (load, instant) [N]
+    sampled: FloatArray  # at the steps of the record, shape (time, load) [N]
+    finest: float = np.inf  # time within which they may change noticeably [s]
+    jumps: FloatArray | None = None  # by which each load jumps somewhere within a step, shape (load,) [N]
+
+
+def carried(
+    system: Prescribed,
+    forces: Forces,
+    *,
+    time_step: float,
+    truncation: float | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Deflection under prescribed forces: `moving_loads`, for functions of time.
+
+    Parameters
+    ----------
+    system : Prescribed
+        The guideway, where loads stand and deflections are observed, and their speed.
+    forces : Forces
+        The forces.
+    time_step : float
+        Step of the record [s].
+    truncation : float, optional
+        Frequency beyond which the response is left out [Hz].
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `moving_loads` returns it.
+
+    Raises
+    ------
+    ValueError
+        If memory does not hold the result.
+    SolveError
+        If a result is not finite.
+    """
+    guideway, speed, samples = system.guideway, system.speed, len(forces.sampled)
     # What settles here is the guideway, in a time that is short beside that of any vehicle.
-    settling = len(forces) * time_step
-    require_record(settling, settling, time_step, at.size + points.size)
-    line = Line(samples=len(forces), time_step=time_step, settling=settling)
-    system = Prescribed(guideway=guideway, loads=at, points=points, speed=speed)
+    settling = samples * time_step
+    require_record(settling, settling, time_step, system.loads.size + system.points.size)
+    line = Line(samples=samples, time_step=time_step, settling=settling)
     progress("sampling", 0.0)
-    # One case. Where no truncation is stated nothing is left out.
-    stated = np.inf if truncation is None else truncation
-    driven_by = excited(system, lambda line: line.given(forces.T[None]), line, time_step, truncation=stated)
-    yielding = solve(
-        system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress
-    ).deflection
+    # What changes sooner than the finest steps tell counts as abrupt.
+    step = min(time_step, max(forces.finest, SAMPLING.per_station * line.period / SAMPLING.most))
+    driven_by = excited(system, forces.given, line, step, truncation=np.inf, wanted=SAMPLING.loads)
+    yielding = solve(system, driven_by.omega, driven_by.spectra, progress=progress).deflection
     progress("histories", 0.0)
-    response, error = driven_by.line.records(yielding), driven_by.truncation.error
+    deflection, wrapped = _histories(driven_by, yielding)
+    error = 0.0
+    if truncation is not None:
+        # What it leaves out is known: nothing else would tell how much that is.
+        kept = Truncation(frequency=truncation).taper(driven_by.omega)
+        left_out, _ = _histories(driven_by, yielding * (1.0 - kept))
+        error = _relative(np.sqrt((left_out**2).mean(axis=-1)), np.sqrt((deflection**2).mean(axis=-1)))
+        deflection, yielding = deflection - left_out, yielding * kept
     critical_speed = float(guideway.critical_speed)
     found = [
         *find.near_critical(abs(speed), critical_speed),
         *findings_of(guideway),
-        *find.not_decayed("deflection", response.wrapped, response.values),
+        *find.not_decayed("deflection", wrapped, deflection),
         *find.beyond_truncation(truncation or 0.0, error),
+        *find.jumps_within_a_step(_shifted(system, driven_by, forces, deflection), time_step),
+        *find.not_resolved(driven_by.left_out, driven_by.step),
+        *find.not_shown(_beyond(yielding, line.padded // 2), ["deflection"], time_step, kept=False),
     ]
     values = {
         "time": line.time,
-        "load": at,
-        "point": points,
-        "force": forces,
-        "deflection": turned(response.values[0]),
+        "load": system.loads,
+        "point": system.points,
+        "force": forces.sampled,
+        "deflection": turned(deflection),
     }
     settings = attributes(
         "loaded",
@@ -133,3 +202,74 @@ def moving_loads(
         findings=found,
     )
     return labelled(values, settings)
+
+
+def isolated_jumps(forces: FloatArray) -> FloatArray:
+    """Find where sampled forces jump: what is smooth has no third differences like it, and noise has many.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (time, load)
+        Forces [N].
+
+    Returns
+    -------
+    ndarray, shape (load,)
+        Largest isolated jump of each [N]; 0 if there is none.
+
+    Examples
+    --------
+    >>> time = np.arange(100)
+    >>> isolated_jumps(np.stack([5.0 * (time > 40), np.sin(0.1 * time), time % 3.0], axis=1)).tolist()
+    [5.0, 0.0, 0.0]
+    """
+    reach = SAMPLING.alone
+    third = np.diff(np.pad(forces, ((reach + 1, reach + 1), (0, 0)), mode="edge"), n=3, axis=0)
+    # A jump J makes J, -2 J, J.
+    middle = third[reach:-reach]
+    size = 0.5 * np.abs(middle)
+    others = np.zeros_like(size)
+    for away in range(1, reach + 1):
+        expected = -0.5 * middle if away == 1 else 0.0
+        for shift in (-away, away):
+            there = third[reach + shift : len(third) - reach + shift]
+            others = np.maximum(others, np.abs(there - expected))
+    found: FloatArray = np.where(others < SAMPLING.like * size, size, 0.0).max(axis=0)
+    return found
+
+
+def _histories(driven_by: Excited, yielding: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """Deflection (point, time) of all parts together, and what of it wraps around (point,)."""
+    line = driven_by.line
+    parts, wrapped = line.records(yielding)
+    for part, begins in zip(parts, driven_by.begins, strict=True):
+        # Nothing moves before: what is left out of a spectrum comes as a ripple on both sides.
+        part[:, line.time <= begins + TRANSFORM.rounding * line.time_step] = 0.0
+    return together(parts), wrapped.sum(axis=0)
+
+
+def _beyond(yielding: ComplexArray, shown: int) -> FloatArray:
+    """Share of the largest deflection, relative L2, past the frequencies that a record shows; shape (1,)."""
+    energy = np.square(np.abs(together(yielding)))
+    largest = energy.sum(axis=-1).max()
+    return np.sqrt(energy[:, shown + 1 :].sum(axis=-1).max(keepdims=True) / (largest or 1.0))
+
+
+def _shifted(system: Prescribed, driven_by: Excited, forces: Forces, deflection: FloatArray) -> float:
+    """Tell what it changes, relative to the largest deflection of a point, if jumps come half a step later.
+
+    A spline through the samples takes a jump to the middle of its step.
+    """
+    if forces.jumps is None or not forces.jumps.any():
+        return 0.0
+    line, jumps = driven_by.line, np.diag(forces.jumps)[forces.jumps > 0]
+    impulses = (jumps[..., None] * driven_by.fade).astype(complex)
+    answers = line.records(solve(system, driven_by.omega, impulses).deflection).values
+    # Whether several jump at once is not asked.
+    changed = 0.5 * line.time_step * np.sqrt((np.abs(answers).max(axis=-1) ** 2).sum(axis=0))
+    return _relative(changed, np.abs(deflection).max(axis=-1))
+
+
+def _relative(part: FloatArray, whole: FloatArray) -> float:
+    """Largest quotient of a part and the whole at any point."""
+    return float(np.divide(part, whole, out=np.zeros_like(part), where=whole > 0).max())

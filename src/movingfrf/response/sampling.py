@@ -23,14 +23,29 @@ from movingfrf.response.truncation import TRUNCATION, Truncation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Wanted:
+    """How much is solved; in brackets, between what each number is safe."""
+
+    # What of any output may lie in the highest quarter of the frequencies, and beyond what is solved, relative L2.
+    negligible: float  # [1e-6 to 3e-4]
+    # The same beyond what is solved, where nothing changes abruptly.
+    smooth: float  # [1e-12 to 3e-4]
+    # Where outputs are of a kind, one that is less than this share of the largest counts as if it were so much.
+    alike: float = 0.0  # [0 to 0.1]
+    # Whether every abrupt change is told.
+    told: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Sampling:
     """What tunes the steps of the solution; in brackets, between what each number is safe."""
 
     # Steps from station to station of a profile at first; twice as many, and so on, until they are enough.
     per_station: float = 4.0  # [2 to 8]
-    # What of any output may lie in the highest quarter of the frequencies, and beyond what is solved, relative L2.
-    # Where that turns out to be more than `tolerated` of the largest value of a channel, so much less, and again.
-    negligible: float = 3e-5  # [1e-6 to 1e-4]
+    road: Wanted = Wanted(negligible=3e-5, smooth=3e-5)
+    loads: Wanted = Wanted(negligible=1e-4, smooth=1e-9, alike=0.01, told=True)
+    # Where what a road leaves out turns out to be more than this share of the largest value of a channel, less is
+    # negligible, and it is solved again.
     tolerated: float = 3e-4  # [1e-4 to 5e-4]
     rounds: int = 3  # [2 to 5]
     # Where the highest quarter begins; what lies beyond holds at most so many times its energy.
@@ -39,15 +54,28 @@ class Sampling:
     # With four times as many steps the energy there falls to this share of it at most, or else the road begins with
     # a jump: no step would be fine enough.
     falling: float = 0.25  # [0.1 to 0.5]
+    # Where every abrupt change is told, finer steps help, unless the system answers the highest frequency of
+    # all with more than this share of its largest answer.
+    stiff: float = 0.03  # [0.01 to 0.1]
+    # What is left out of the answer to an abrupt change comes at once, within few periods of the highest frequency:
+    # so many radians of it later it has died away. Or it is so small that no instant misses more, relative L2.
+    passed: float = 20.0  # [10 to 100]
+    at_once: float = 1e-4  # [1e-6 to 1e-4]
     # Least steps per period, and most for all ports together.
     least: int = 256  # [64 to 1024]
     most: int = 2**23  # [2**21 to 2**27: time and memory only]
-    # Share of the solved frequencies over which the road fades out.
+    # Share of the solved frequencies over which the road fades out; and where it changes abruptly: the wider, the
+    # sooner what is left out has died away.
     fades: float = 0.1  # [0.05 to 0.2]
+    fades_abrupt: float = 1.0  # [0.5 to 2]
     # For figures a channel is as large as this share of the largest of its kind at least: one that hardly moves is
     # no matter. From the other one on, what a stated truncation changes is computed rather than estimated.
     smallest: float = 1e-3  # [a convention]
     estimated: float = 1e-4  # [1e-5 to 5e-4]
+    # A sampled force jumps where its third differences are those of a jump, up to this share of it, and no others
+    # are within so many steps.
+    like: float = 0.2  # [0.1 to 0.3]
+    alone: int = 6  # [4 to 8]
 
 
 SAMPLING = Sampling()
@@ -57,26 +85,28 @@ class Excited(NamedTuple):
     """What drives a system, in steps that are fine enough, and up to where it is solved."""
 
     line: Line
-    spectra: ComplexArray  # (*case, port, frequency), as far as they are solved
+    spectra: ComplexArray  # (part, *case, port, frequency), as far as they are solved
+    begins: tuple[float, ...]  # from when on each part acts [s]
     truncation: Truncation
-    ends: int  # number of the frequency from which on they fade out
+    fade: FloatArray  # (frequency,) what of each frequency is solved: 1, past what is negligible less
     finest: bool  # whether no finer step would help, or none was to be looked for
+    left_out: float  # of any output, relative L2, where no step that is allowed is fine enough
     beyond: FloatArray  # (output,) what lies beyond over what lies in the highest octave that is solved
     not_shown: FloatArray  # (output,) share of it, relative L2, beyond the Nyquist frequency of the record
 
     @property
     def step(self) -> float:
         """Step in which the record is solved: half a period of the highest frequency [s]."""
-        return 0.5 * self.line.period / max(self.spectra.shape[-1] - 1, 1)
+        return 0.5 * self.line.period / max(self.fade.size - 1, 1)
 
     @property
     def omega(self) -> ComplexArray:
         """Frequencies that are solved [rad/s]."""
-        return self.line.omega(slice(self.spectra.shape[-1]))
+        return self.line.omega(slice(self.fade.size))
 
     def likewise(self, given: Given) -> ComplexArray:
         """Spectra of something else, as far as this is solved."""
-        return _ended(self.line.spectra(given), self.ends, self.spectra.shape[-1])
+        return self.line.spectra(given)[..., : self.fade.size] * self.fade
 
 
 def excited(
@@ -87,7 +117,7 @@ def excited(
     *,
     truncation: float | None,
     solved_step: float | None = None,
-    negligible: float = SAMPLING.negligible,
+    wanted: Wanted = SAMPLING.road,
 ) -> Excited:
     """Find the steps in which a record is solved.
 
@@ -105,8 +135,8 @@ def excited(
         Frequency beyond which the road counts as rigid [Hz]; None: it is found.
     solved_step : float, optional
         Step that is stated [s].
-    negligible : float
-        What of any output may be left out, relative L2.
+    wanted : Wanted
+        How much is solved.
 
     Returns
     -------
@@ -122,46 +152,47 @@ def excited(
         while True:
             line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
             driving = given(line)
-            ports = driving.values[..., 0].size
-            magnitudes = line.magnitudes(driving.values)
-            found = influence(system, line, magnitudes, truncation)
+            magnitudes = line.magnitudes(driving)
+            found = influence(system, line, magnitudes, truncation, wanted.alike)
             highest = found.content(int(SAMPLING.quarter * line.size))
-            finest = 2 * points * ports > SAMPLING.most or highest**2 > SAMPLING.falling * energies[-2]
-            if finest or stated is not None or highest <= negligible:
+            # Beyond this frequency what an abrupt change adds has passed when the next sample is taken.
+            passed = int(SAMPLING.passed * line.period / (2 * np.pi * line.clear(driving)))
+            at_once = SAMPLING.at_once / np.sqrt(line.size)
+            enough = highest <= wanted.negligible and (passed <= SAMPLING.quarter * line.size or highest <= at_once)
+            if enough or stated is not None or 2 * points * driving.values[..., 0].size > SAMPLING.most:
+                break
+            falls = highest**2 <= SAMPLING.falling * energies[-2]
+            if not falls and not (wanted.told and _stiffens(system, line, found)):
                 break
             points, energies = 2 * points, [*energies, highest**2]
+    fades = SAMPLING.fades_abrupt if driving.abrupt else SAMPLING.fades
     if stated is None:
-        ends = found.negligible_from(found.whole, negligible, magnitudes)
-        count = min(int(ends * (1 + SAMPLING.fades)) + 2, line.size)
+        limit = wanted.negligible if driving.abrupt else wanted.smooth
+        ends = found.negligible_from(found.whole, limit, magnitudes)
+        if passed > ends:
+            ends = min(passed, found.negligible_from(found.whole, at_once, magnitudes))
+        count = min(int(ends * (1 + fades)) + 2, line.size)
     else:
         count = min(stated, line.size)
-        ends = int(count / (1 + SAMPLING.fades))
+        ends = int(count / (1 + fades))
+    # What a sharp cut discards would ring on, and the window raises what comes late.
+    fade = 1.0 - smooth_step((np.arange(count) - ends + 1) / max(count - ends, 1))
     if truncation is None:
         kept = min(found.negligible_from(found.added, TRUNCATION.negligible, magnitudes), count)
         # Where the response to rest alone is kept, some frequency below the next.
         truncation = max(kept - 1, 0.5 * (kept > 0)) / line.period
     cut = Truncation(frequency=truncation)
-    cut = replace(cut, error=found.error(cut.untouched(line.omega()), count))
     return Excited(
         line=line,
-        spectra=_ended(line.spectra(driving), ends, count),
-        truncation=cut,
-        ends=ends,
-        finest=finest or stated is not None,
+        spectra=line.parts(driving)[..., :count] * fade,
+        begins=driving.begins,
+        truncation=replace(cut, error=found.error(cut.untouched(line.omega()), count)),
+        fade=fade,
+        finest=stated is not None or not enough,
+        left_out=0.0 if enough else highest,
         beyond=_beyond(found, ends, count),
         not_shown=found.shares(line.padded // 2 + 1, count),
     )
-
-
-def _ended(spectra: ComplexArray, ends: int, count: int) -> ComplexArray:
-    """Let spectra fade out between two numbers of frequencies.
-
-    What a sharp cut discards would ring on, and the window raises what comes late.
-    """
-    spectra = spectra[..., :count]
-    fading = count - ends
-    spectra[..., ends:] *= 1.0 - smooth_step(np.arange(1, fading + 1) / fading)
-    return spectra
 
 
 def _beyond(found: Influence, ends: int, count: int) -> FloatArray:
@@ -171,3 +202,10 @@ def _beyond(found: Influence, ends: int, count: int) -> FloatArray:
     not_sampled = SAMPLING.beyond * found.shares(int(SAMPLING.quarter * lines), lines) ** 2
     octave = found.shares(count // 2, count)
     return np.sqrt(np.divide(not_solved + not_sampled, octave**2, out=np.zeros_like(octave), where=octave > 0))
+
+
+def _stiffens(system: Sized, line: Line, found: Influence) -> bool:
+    """Tell whether a system answers the highest frequency of all with little."""
+    highest = replace(line, points=SAMPLING.most)
+    answered = system.per_unit(highest.omega(slice(highest.size - 1, None)))[1][..., 0]
+    return bool((answered <= SAMPLING.stiff * found.whole.gain.max(axis=-1)).all())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,9 +32,10 @@ class Settling:
 
     # To what the vehicle's slowest vibration should have decayed at the end of the padding.
     decayed: float = 3e-2  # [1e-3 to 3e-2]
-    # The padding for it is at most so many times the duration, or so long.
-    durations: float = 4.0  # [2 to 16]
-    longest: float = 60.0  # [s; 15 to 300]
+    # The padding for it is at most so many times the duration, or so many of its cycles: what has not settled by
+    # then comes back weakened by the window.
+    durations: float = 2.0  # [1 to 16]
+    cycles: float = 20.0  # [10 to 100]
 
 
 SETTLING = Settling()
@@ -175,18 +176,18 @@ def driven(
     system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)
     progress("steady state", 0.0)
     surveyed = survey(system)
-    line, negligible = line_of(journey, vehicle), SAMPLING.negligible
+    line, wanted = line_of(journey, vehicle), SAMPLING.road
     for _ in range(SAMPLING.rounds):
         progress("sampling", 0.0)
         # One case.
         driven_by = excited(
             system,
-            lambda line: Given(excitation.elevation(journey.speed * line.instants)[None]),
+            lambda line: Given(excitation.elevation(journey.speed * line.instants)),
             line,
             excitation.station / journey.speed,
             truncation=journey.truncation,
             solved_step=journey.solved_step,
-            negligible=negligible,
+            wanted=wanted,
         )
         response = solve(
             system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress
@@ -196,7 +197,8 @@ def driven(
         left_out = unresolved(driven_by, response, histories)
         if driven_by.finest or left_out <= SAMPLING.tolerated:
             break
-        negligible *= max(0.5 * SAMPLING.tolerated / left_out, 0.01)
+        less = wanted.negligible * max(0.5 * SAMPLING.tolerated / left_out, 0.01)
+        wanted = replace(wanted, negligible=less, smooth=less)
     force, deflection, motion, acceleration = histories
     cut = truncated(system, driven_by, response, histories)
     guessed = 0.0
@@ -282,9 +284,11 @@ def line_of(journey: Journey, vehicle: Vehicle) -> Line:
     ValueError
         If memory would not hold the result.
     """
-    slowest = float((-vehicle.poles.real).min(initial=np.inf))
-    longest = max(SETTLING.durations * journey.duration, SETTLING.longest)
-    settling = min(-np.log(SETTLING.decayed) / slowest, longest) if slowest > 0 else longest
+    settling = 0.0
+    for pole in vehicle.poles.tolist():
+        longest = max(SETTLING.durations * journey.duration, SETTLING.cycles * 2 * np.pi / abs(pole))
+        settled = -np.log(SETTLING.decayed) / -pole.real if pole.real < 0 else np.inf
+        settling = max(settling, min(settled, longest))
     channels = len(vehicle.contacts) + len(vehicle.dof_names)
     require_record(journey.duration, settling, journey.time_step, channels)
     return Line(samples=journey.samples, time_step=journey.time_step, settling=settling)

@@ -114,8 +114,11 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
     ]
 
 
-def not_shown(shares: FloatArray, names: Sequence[str], time_step: float) -> list[Finding]:
-    """Shares of outputs, relative L2, above the Nyquist frequency of their record, whose steps are [s]."""
+def not_shown(shares: FloatArray, names: Sequence[str], time_step: float, *, kept: bool = True) -> list[Finding]:
+    """Shares of outputs, relative L2, above the Nyquist frequency of their record, whose steps are [s].
+
+    Whether the response is kept beside it as it was solved.
+    """
     share = float(shares.max(initial=0.0))
     if share <= THRESHOLDS.at_nyquist:
         return []
@@ -124,9 +127,42 @@ def not_shown(shares: FloatArray, names: Sequence[str], time_step: float) -> lis
         Finding(
             "beyond_nyquist",
             f"{share:.1%} of the root mean square of the {name} lies above {0.5 / time_step:g} Hz, which a record "
-            f"in steps of {time_step:g} s cannot show. Its values are right; measures and spectra are made of the "
-            "response as it was solved, which is kept beside it",
+            f"in steps of {time_step:g} s cannot show. Its values are right; "
+            + (
+                "measures and spectra are made of the response as it was solved, which is kept beside it"
+                if kept
+                else "more happens between them, which a shorter time step shows"
+            ),
             share,
+        )
+    ]
+
+
+def not_resolved(left_out: float, solved_step: float) -> list[Finding]:
+    """Say what is left out, relative to a record, although it was solved in steps as fine as are allowed [s]."""
+    if left_out <= THRESHOLDS.tolerated:
+        return []
+    return [
+        Finding(
+            "unresolved",
+            f"steps of {solved_step:.2g} s, the finest that were tried, leave out {left_out:.1e} of the root mean "
+            "square of an output, most of it where something begins or ends abruptly",
+            left_out,
+        )
+    ]
+
+
+def jumps_within_a_step(change: float, time_step: float) -> list[Finding]:
+    """Say what it may change, relative to the largest value, that a force jumps within a step [s]."""
+    if change <= THRESHOLDS.tolerated:
+        return []
+    return [
+        Finding(
+            "jump_within_a_step",
+            f"a force jumps between two samples, {time_step:g} s apart, at an instant that they do not tell; "
+            f"half a step later changes the deflection by up to {change:.1e} of its largest value. A shorter step "
+            "would tell, or a scenario, whose loads are switched at stated instants",
+            change,
         )
     ]
 

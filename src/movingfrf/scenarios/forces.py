@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +11,46 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.smooth import smooth_step
+from movingfrf.response.line import Abrupt, Given, Line
 
-# A force over time [s] → [N].
-History = Callable[[FloatArray], FloatArray]
+# A smooth force at some times [s], or its derivative of an order up to 2 [N, N/s, N/s²].
+Smooth = Callable[[FloatArray, int], FloatArray]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class History:
+    """A force over time.
+
+    Parameters
+    ----------
+    smooth : callable
+        Times [s] and an order → the force, or its first or second derivative [N, N/s, N/s²].
+    begins, ends : float
+        When it begins and ends to act, abruptly if it is not zero there [s].
+    finest : float
+        Time within which it may change noticeably [s].
+    """
+
+    smooth: Smooth
+    begins: float = 0.0
+    ends: float = np.inf
+    finest: float = np.inf
+
+    def __call__(self, time: FloatArray) -> FloatArray:
+        """Force [N] at an array of times [s]; where it changes abruptly, the one after."""
+        return np.where((time >= self.begins) & (time < self.ends), self.smooth(time, 0), 0.0)
+
+    def abrupt(self, port: int) -> list[Abrupt]:
+        """Where it changes abruptly from t = 0 on."""
+        begins = max(self.begins, 0.0)
+        if begins >= self.ends:
+            return []
+        at = {begins: 1.0, self.ends: -1.0} if np.isfinite(self.ends) else {begins: 1.0}
+        changes = (
+            Abrupt(time, port, sign * np.stack([self.smooth(np.array(time), order) for order in range(3)]))
+            for time, sign in at.items()
+        )
+        return [change for change in changes if change.jumps.any()]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -24,8 +61,8 @@ class Loads:
     ----------
     positions : ndarray, shape (load,)
         Where the loads stand, ahead of the reference point [m].
-    histories : tuple of callable
-        The force of each over time [s] → [N].
+    histories : tuple of History
+        The force of each over time.
     observe : ndarray, shape (point,)
         Where the deflection is wanted, ahead of the reference point [m].
     """
@@ -38,6 +75,17 @@ class Loads:
         """Evaluate the forces at some times [s], shape (time, load) [N]."""
         return np.stack([history(time) for history in self.histories], axis=1)
 
+    def given(self, line: Line) -> Given:
+        """Give the forces at the instants of a line, and where they change abruptly."""
+        last = line.instants[-1]
+        abrupt = [change for port, history in enumerate(self.histories) for change in history.abrupt(port)]
+        return Given(self.at(line.instants).T, tuple(change for change in abrupt if change.time <= last))
+
+    @property
+    def finest(self) -> float:
+        """Time within which a force may change noticeably [s]."""
+        return min(history.finest for history in self.histories)
+
 
 def loads(*, positions: Sequence[float], force: Sequence[History], observe: Sequence[float] | None = None) -> Loads:
     """Prescribed loads: where they stand, and one force for each.
@@ -46,8 +94,8 @@ def loads(*, positions: Sequence[float], force: Sequence[History], observe: Sequ
     ----------
     positions : sequence of float
         Positions ahead of the reference point, which travels along [m].
-    force : sequence of callable
-        Force of each load [N], over time [s].
+    force : sequence of History
+        Force of each load, over time.
     observe : sequence of float, optional
         Where the deflection is wanted, ahead of the reference point [m]; None: at the loads.
 
@@ -89,8 +137,8 @@ def constant(
 
     Returns
     -------
-    callable
-        Force [N] at an array of times [s].
+    History
+        The force.
 
     Raises
     ------
@@ -99,7 +147,11 @@ def constant(
     """
     with checking() as check:
         force = check.finite("force", force, "N")
-    return _switched(lambda time: np.full_like(time, force), switch_on, switch_off, ramp)
+
+    def steady(time: FloatArray, order: int) -> FloatArray:
+        return np.full_like(time, 0.0 if order else force)
+
+    return _switched(History(smooth=steady), switch_on, switch_off, ramp)
 
 
 def harmonics(
@@ -133,8 +185,8 @@ def harmonics(
 
     Returns
     -------
-    callable
-        Force [N] at an array of times [s].
+    History
+        The force.
 
     Raises
     ------
@@ -147,13 +199,16 @@ def harmonics(
         phase = np.zeros(size.size) if phases is None else check.array("phases", phases, "rad", (size.size,))
         mean = check.finite("mean", mean, "N")
 
-    def sum_of_sines(time: FloatArray) -> FloatArray:
-        total = np.full_like(time, mean)
-        for amplitude, frequency, shift in zip(size, at, phase, strict=True):
-            total += amplitude * np.sin(2 * np.pi * frequency * time + shift)
+    def sum_of_sines(time: FloatArray, order: int) -> FloatArray:
+        total = np.full_like(time, 0.0 if order else mean)
+        for amplitude, omega, shift in zip(size, 2 * np.pi * at, phase, strict=True):
+            # Each derivative is a quarter of a period ahead.
+            total += amplitude * omega**order * np.sin(omega * time + (shift + 0.5 * np.pi * order))
         return total
 
-    return _switched(sum_of_sines, switch_on, switch_off, ramp)
+    highest = np.abs(at).max(initial=0.0)
+    finest = 0.1 / highest if highest else np.inf  # a tenth of a period
+    return _switched(History(smooth=sum_of_sines, finest=finest), switch_on, switch_off, ramp)
 
 
 def random_sum(
@@ -191,8 +246,8 @@ def random_sum(
 
     Returns
     -------
-    callable
-        Force [N] at an array of times [s].
+    History
+        The force.
 
     Raises
     ------
@@ -235,8 +290,8 @@ def tabulated(*, file: Path, column: int = 1) -> History:
 
     Returns
     -------
-    callable
-        Force [N] at an array of times [s].
+    History
+        The force.
 
     Raises
     ------
@@ -256,7 +311,12 @@ def tabulated(*, file: Path, column: int = 1) -> History:
         if not check.faults and column > forces.shape[1]:
             check.refuse("column", f"must be at most {forces.shape[1]}, the columns of {file}, got {column}")
     spline = CubicSpline(time, forces[:, column - 1])
-    return lambda at: np.where((at >= time[0]) & (at <= time[-1]), spline(at), 0.0)
+    return History(
+        smooth=lambda at, order: np.asarray(spline(at, order)),
+        begins=float(time[0]),
+        ends=float(np.nextafter(time[-1], np.inf)),  # the last row counts
+        finest=float(np.diff(time).min()),
+    )
 
 
 def _switched(history: History, on: float, off: float | None, ramp: float) -> History:
@@ -269,13 +329,15 @@ def _switched(history: History, on: float, off: float | None, ramp: float) -> Hi
             if off < on + 2 * ramp:
                 check.refuse("switch_off", f"must leave time for both ramps after switch_on, got {off!r} s")
 
-    def switched(time: FloatArray) -> FloatArray:
-        if ramp:
-            share = smooth_step((time - on) / ramp)
-            if off is not None:
-                share = share * smooth_step((off - time) / ramp)
-        else:
-            share = np.where((time >= on) & (time < (np.inf if off is None else off)), 1.0, 0.0)
-        return history(time) * share
+    within = replace(history, begins=on, ends=np.inf if off is None else off)
+    if not ramp:
+        return within
 
-    return switched
+    def ramped(time: FloatArray, order: int) -> FloatArray:
+        share = smooth_step((time - on) / ramp)
+        if off is not None:
+            share = share * smooth_step((off - time) / ramp)
+        # Derivatives are asked for where it begins and ends: there they are zero.
+        return history.smooth(time, order) * share
+
+    return replace(within, smooth=ramped, finest=min(history.finest, 0.25 * ramp))

@@ -12,9 +12,10 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Fault, nearest, shown
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.guideways.guideway import Guideway
-from movingfrf.response.moving_loads import moving_loads
+from movingfrf.guideways.guideway import Guideway, require_guideway
+from movingfrf.response.moving_loads import Forces, carried
 from movingfrf.response.simulation import driven
+from movingfrf.response.system import Prescribed
 from movingfrf.roughness.road import Road
 from movingfrf.scenarios.forces import Loads
 from movingfrf.scenarios.stepped import EXCHANGED, Division, coupled, elements, loaded, require_endless
@@ -187,13 +188,17 @@ class Passage:
                 Division(element=elements(self.guideway)[-1]),
                 progress=progress,
             )()
-        return moving_loads(
-            require_endless(self.guideway, instead=NEWMARK),
-            self.forces,
-            self.loads.positions,
-            speed=self.journey.speed,
+        guideway = require_endless(self.guideway, instead=NEWMARK)
+        require_guideway(guideway)
+        return carried(
+            Prescribed(
+                guideway=guideway,
+                loads=self.loads.positions,
+                points=self.loads.observe,
+                speed=self.journey.speed,
+            ),
+            Forces(given=self.loads.given, sampled=self.forces, finest=self.loads.finest),
             time_step=self.journey.time_step,
-            observe=self.loads.observe,
             truncation=self.journey.truncation,
             progress=progress,
         )

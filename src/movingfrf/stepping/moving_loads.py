@@ -41,7 +41,8 @@ def newmark_loads(
     road : FiniteGuideway
         The road; see `finite_track`.
     force : array_like, shape (time, load)
-        Forces [N], positive down.
+        Forces at the steps [N], positive down. One that is not zero at t = 0 is switched on at that instant; one
+        that jumps later rises over the step before.
     positions : array_like, shape (load,)
         Where the forces act, ahead of the frame that travels with them [m].
     speed : float

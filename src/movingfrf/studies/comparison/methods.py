@@ -15,7 +15,6 @@ from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.foundations import OnMass
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import Track
-from movingfrf.response.moving_loads import moving_loads
 from movingfrf.response.simulation import driven
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.scenario import Drive, Passage, Scenario, drive_of, passage_of
@@ -114,8 +113,8 @@ class Case:
 def _transformed(case: Case, guideway: Guideway) -> Solve:
     """Solve in the frequency domain, on any guideway."""
     if isinstance(case.scenario.case, Passage):
-        given, how = case.loaded()
-        return lambda: moving_loads(guideway, *given, truncation=case.journey.truncation, **how)
+        passage = replace(case.scenario.case, guideway=guideway, journey=case.journey)
+        return passage.run
     return lambda: driven(guideway, *case.parts, case.journey)
 
 
