@@ -525,7 +525,7 @@ def _measured(study: Study, line: Line) -> tuple[dict[str, float], dict[str, flo
 
 def _product(line: Line, frf: ComplexArray, forces: FloatArray) -> FloatArray:
     """Transform, multiply, transform back."""
-    return line.records(frf * line.spectra(line.given(forces[:, 0]))[: frf.size]).values[:, None]
+    return line.records(frf * line.spectra(line.given(forces.T))[0, : frf.size]).values[:, None]
 
 
 def _with_full_matrices(
