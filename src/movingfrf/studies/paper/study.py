@@ -166,9 +166,8 @@ class Study:
         journey = scenario(name).journey
         samples, step = journey.samples, journey.time_step
         line = Line(samples=samples, time_step=step, settling=samples * step)
-        spectrum = guideway.moving_frf(0.0, journey.speed, line.omega()) * line.spectra(
-            line.given(history(name)[:, 0])
-        )
+        forces = line.spectra(line.given(history(name).T))[0]
+        spectrum = guideway.moving_frf(0.0, journey.speed, line.omega()) * forces
         kept = np.arange(line.size) / line.period
         return lambda cut: line.records(spectrum[kept <= cut * (1 + 1e-9)]).values[:, None]
 
