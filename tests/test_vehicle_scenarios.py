@@ -354,7 +354,7 @@ def test_check_remarks_on_what_is_in_order(text, words, tmp_path, capsys):
     assert main(["check", str(file)]) == 0
     told = " ".join(capsys.readouterr().out.split())
     assert words in told
-    assert ("but a step of 0.05 s resolves only 10 Hz" in told) == (
+    assert ("steps of 0.05 s shows only what is below 10 Hz" in told) == (
         parse_scenario(file.read_text()).case.vehicle.natural_frequencies.max() > 10
     )
     assert "in order" in told

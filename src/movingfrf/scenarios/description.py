@@ -16,8 +16,8 @@ from movingfrf.response.line import TRANSFORM, Line
 from movingfrf.response.simulation import line_of
 from movingfrf.response.survey import survey
 from movingfrf.response.system import System
-from movingfrf.response.truncation import EVERYWHERE, Truncation
-from movingfrf.results.findings import near_critical, one_path
+from movingfrf.results.findings import grade_taken, near_critical, one_path
+from movingfrf.roughness.excitation import Excitation, Touch, excite
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
 from movingfrf.roughness.straight import mean_slope, straight
@@ -94,10 +94,18 @@ def described(scenario: Scenario) -> Description:
             of_vehicle, _, vibrations = described_vehicle(vehicle)
             sections += [of_vehicle, contacts, vibrations, ("Roughness", _roughness(road))]
             paths = one_path(road.profile.one_path, vehicle.paths, vehicle.across)
-            found += [*_remarks_on_vehicle(vehicle, scenario.journey), *(finding.message for finding in paths)]
+            graded = grade_taken(_excitation(road, vehicle, scenario.journey).grade)
+            found += [*_remarks_on_vehicle(vehicle, scenario.journey)]
+            found += [finding.message for finding in (*paths, *graded)]
         case Passage() as passage:
             sections.append(("Loads", _loads(passage)))
     return Description(sections=[*sections, ("Run", _run(scenario.case))], remarks=found, refusal=refusal)
+
+
+def _excitation(road: Road, vehicle: Vehicle, journey: Journey) -> Excitation:
+    """Let the vehicle look at its road."""
+    touch = Touch(**vehicle.touching)
+    return excite(road.profile, touch, start=journey.start, distance=journey.distance, blend=journey.blend)
 
 
 def _remarks_on_vehicle(vehicle: Vehicle, journey: Journey) -> list[str]:
@@ -106,8 +114,8 @@ def _remarks_on_vehicle(vehicle: Vehicle, journey: Journey) -> list[str]:
     fastest, nyquist = float(frequencies.max(initial=0.0)), 0.5 / journey.time_step
     if fastest > nyquist:
         found.append(
-            f"the vehicle vibrates at up to {fastest:.4g} Hz, but a step of {journey.time_step:g} s resolves only "
-            f"{nyquist:.4g} Hz"
+            f"the vehicle vibrates at up to {fastest:.4g} Hz, but a record in steps of {journey.time_step:g} s "
+            f"shows only what is below {nyquist:.4g} Hz"
         )
     if frequencies.size and ratios.min() < UNUSUAL.damping:
         found.append(
@@ -247,7 +255,7 @@ def _roughness(road: Road) -> list[tuple[str, str]]:
         ("source", road.description),
         ("stations", f"{stations.size} from {stations[0]:.6g} m to {stations[-1]:.6g} m"),
         ("elevation", f"{elevation.min():.4g} m to {elevation.max():.4g} m"),
-        ("mean slope", ", ".join(f"{100 * slope:.2f} %" for slope in dict.fromkeys(slopes.round(4)))),
+        ("mean slope", ", ".join(f"{100 * slope + 0.0:.2f} %" for slope in dict.fromkeys(slopes.round(4)))),
     ]
     if road.spectrum is not None:
         return [*lines, ("fitted spectrum", "none: it was made from the spectrum above")]
@@ -297,10 +305,10 @@ def _run(case: Drive | Passage) -> list[tuple[str, str]]:
     if isinstance(case.guideway, FiniteGuideway):
         return [*lines, ("method", f"through time: movingfrf run FILE --method {through_time}")]
     memory = TRANSFORM.bytes_per_sample * channels * line.padded
-    cut = EVERYWHERE if journey.truncation is None else Truncation(frequency=journey.truncation)
-    kept = "the truncation is found" if cut is EVERYWHERE else f"{cut.reach(line.omega())} of them with the road"
+    found = "found, as fine as road and system need"
     return [
         *lines,
-        ("frequencies", f"{line.size} up to {0.5 / journey.time_step:g} Hz, {kept}"),
+        ("solved in steps", found if journey.solved_step is None else f"of {journey.solved_step:g} s"),
+        ("truncation", "found" if journey.truncation is None else f"{journey.truncation:g} Hz"),
         ("memory", f"about {memory / 2**20:.3g} MiB"),
     ]
