@@ -68,7 +68,7 @@ FAULTS = [
         "beyond[-motion.shape[-2] :] * largest(",
         "0 * largest(",
     ),
-    Fault("guesses do not matter", "response/simulation.py", "if excitation.guessed > 0:", "if False:"),
+    Fault("guesses do not matter", "response/simulation.py", "if excitation.guessed <= 0:", "if True:"),
     Fault(
         "truncation's error as estimated", "response/accuracy.py", "if cut.error <= SAMPLING.estimated:", "if True:"
     ),
@@ -97,7 +97,7 @@ FAULTS = [
         "system.vehicle.static_loads",
     ),
     Fault("steady basin reversed", "response/survey.py", ".real @ load", ".real.T @ load"),
-    Fault("static sag missing", "response/simulation.py", "deflected += steady.deflection[:, None]", "pass"),
+    Fault("static sag missing", "response/simulation.py", "+ steady.deflection[:, None]", "+ 0.0"),
     Fault(
         "truncation of the first case only",
         "response/influence.py",

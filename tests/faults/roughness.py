@@ -234,10 +234,10 @@ FAULTS = [
     Fault(
         "grade left in",
         "roughness/excitation.py",
-        "grade = grade_of(list(splines.values()), hindmost) if blend else 0.0",
+        "grade = slope if blend and counts else 0.0",
         "grade = 0.0",
     ),
-    Fault("grade without a blend", "roughness/excitation.py", "hindmost) if blend else 0.0", "hindmost)"),
+    Fault("grade without a blend", "roughness/excitation.py", "slope if blend and counts", "slope if counts"),
     Fault("short profiles have grades", "roughness/excitation.py", "(SEEING.grade_over / length) ** 2", "1.0"),
     Fault(
         "no doubt at the end",

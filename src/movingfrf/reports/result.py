@@ -15,7 +15,7 @@ from movingfrf.reports.loaded import loaded_method, loaded_summary, loaded_table
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Setting
 from movingfrf.reports.ways import is_stepped, way_settings
-from movingfrf.results.labels import HISTORIES, duration_of, kind_of, time_step_of
+from movingfrf.results.labels import HISTORIES, duration_of, kind_of, resolved, time_step_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,9 +48,9 @@ def render(result: xr.Dataset, *, guideway: Guideway | None, scenario_text: str 
     kind = kind_of(result)
     if kind not in HISTORIES:
         raise ValueError(f"result must be of a kind that has histories, {' or '.join(HISTORIES)}, got {kind}")
-    coupled = kind == "coupled"
+    coupled, solved = kind == "coupled", resolved(result)
     with drawing():
-        figures = of_coupled(result, guideway) if coupled else of_loads(result, guideway)
+        figures = of_coupled(solved, guideway) if coupled else of_loads(solved, guideway)
     return page(
         title=title or result.attrs.get("title", "Response of a guideway"),
         version=result.attrs.get("movingfrf", "of unknown version"),
@@ -58,7 +58,7 @@ def render(result: xr.Dataset, *, guideway: Guideway | None, scenario_text: str 
         settings=_settings(result),
         findings=_findings(result),
         no_findings=_no_findings(result),
-        tables=coupled_tables(result) if coupled else loaded_tables(result),
+        tables=coupled_tables(solved) if coupled else loaded_tables(solved),
         figures=figures,
         method=coupled_method(result) if coupled else loaded_method(result),
         scenario=scenario_text or result.attrs.get("scenario", ""),
@@ -74,20 +74,11 @@ def _settings(result: xr.Dataset) -> list[Setting]:
         Setting("Duration", f"{plain(duration)} s"),
         Setting("Distance", f"{plain(float(f'{duration * abs(speed):.12g}'))} m"),
         Setting("Time step", f"{plain(1e3 * step)} ms", f"{result.sizes['time']} samples"),
-        *(
-            [
-                Setting(
-                    "Solved in steps of", f"{1e3 * attrs['solved_step']:.3g} ms", "as fine as road and system need"
-                )
-            ]
-            if "solved_step" in attrs
-            else []
-        ),
         *_truncation_settings(result),
     ]
     if "solved_step" in attrs:
         solved = f"{1e3 * attrs['solved_step']:.3g} ms"
-        found.append(Setting("Solved in steps of", solved, "which road and system need"))
+        found.append(Setting("Solved in steps of", solved, "as fine as road, or loads, and system need"))
     if "critical_speed" in attrs:
         critical = attrs["critical_speed"]
         found.append(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf.response.line import Given
 from movingfrf.response.sampling import SAMPLING, Excited
 from movingfrf.response.solve import solve
@@ -65,10 +65,27 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
         spectra[..., :begins] = 0.0
     of_force = beyond[: force.shape[-2]] * largest(line.records(force).values)
     of_acceleration = beyond[-motion.shape[-2] :] * largest(line.records(motion, derivative=2).values)
-    return max(
+    peaks = max(
         float(relative(part, largest(whole.values)).max(initial=0.0))
         for part, whole in ((of_force, histories.force), (of_acceleration, histories.acceleration))
     )
+    # No more than all can be missing; and no less than what is known to be left out, relative L2.
+    return min(max(peaks, driven_by.missing), 1.0)
+
+
+def shares_beyond(response: Response, omega: ComplexArray, first: int) -> FloatArray:
+    """Share of each contact force and each acceleration, relative L2, from a frequency on; shape (output,)."""
+    outputs = np.concatenate([response.force[0], omega**2 * response.motion[0]])
+    energy = np.square(outputs.real) + np.square(outputs.imag)
+    of_kind = (slice(len(response.force[0])), slice(len(response.force[0]), None))
+    shares = [_share(energy[kind, first:].sum(axis=-1), energy[kind].sum(axis=-1)) for kind in of_kind]
+    return np.concatenate(shares)
+
+
+def _share(part: FloatArray, whole: FloatArray) -> FloatArray:
+    """Square root of the quotient of two energies, each whole as large as a small share of the largest at least."""
+    whole = np.maximum(whole, SAMPLING.smallest**2 * whole.max(initial=0.0))
+    return np.sqrt(np.divide(part, whole, out=np.zeros_like(part), where=whole > 0))
 
 
 def past_the_end(
@@ -121,9 +138,9 @@ def truncated(system: System, driven_by: Excited, response: Response, histories:
         The same, with the greatest relative change of any channel, root mean square over the record.
     """
     cut, omega = driven_by.truncation, driven_by.omega
-    if cut.error <= SAMPLING.estimated:
-        return cut
     first = cut.untouched(omega)
+    if cut.error <= SAMPLING.estimated or omega.size - first > SAMPLING.affordable:
+        return cut
     untruncated = solve(system, omega[first:], driven_by.spectra[..., first:], truncation=EVERYWHERE)
     change = []
     for with_it, without in zip(response, untruncated, strict=True):

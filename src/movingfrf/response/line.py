@@ -34,6 +34,8 @@ class Transform:
     pulse_ends: float = 30.0  # [25 to 50]
     # An abrupt change so near to a sample, as a share of the step, falls on it; one that is so small is none.
     rounding: float = 1e-6  # [1e-9 to 1e-5]
+    # Nearer to the next sample than this share of the step, an abrupt change has hardly begun to act there.
+    nearest: float = 0.05  # [0.02 to 0.1]
     # Channels transformed at a time: as many as a processor's vector holds numbers.
     together: int = 4  # [1 to 64: time only]
     # Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
@@ -87,6 +89,8 @@ class Line:
         Step of the record [s].
     settling : float
         Time that the padding must leave, at least, for the response to die away [s].
+    fading : float
+        Time in which what drives the system fades out past the end, at least [s].
     points : int, optional
         Steps of the solution per period; None: those of the record.
 
@@ -101,6 +105,7 @@ class Line:
     samples: int
     time_step: float
     settling: float = 0.0
+    fading: float = 0.0
     points: int | None = None
 
     def __post_init__(self) -> None:
@@ -109,11 +114,13 @@ class Line:
             check.whole("samples", self.samples, least=1)
             check.positive("time_step", self.time_step, "s")
             check.not_negative("settling", self.settling, "s")
+            check.not_negative("fading", self.fading, "s")
 
     @property
     def padded(self) -> int:
         """Steps of the record per period: itself, time to settle, and what makes their number factorise."""
-        padding = max(self.samples // 8, int(self.settling / (1 - TRANSFORM.fades) / self.time_step), 16)
+        settled = max(self.settling / (1 - TRANSFORM.fades), self.settling + self.fading)
+        padding = max(self.samples // 8, int(settled / self.time_step), 16)
         return int(scipy.fft.next_fast_len(self.samples + padding, real=True))
 
     @property
@@ -142,10 +149,15 @@ class Line:
         return np.arange(self.samples) * self.time_step
 
     @property
+    def _faded_within(self) -> float:
+        """Time past the end of the record in which what drives the system fades out [s]."""
+        padding = self.period - self.samples * self.time_step
+        return min(max(TRANSFORM.fades * padding, self.fading), padding)
+
+    @property
     def instants(self) -> FloatArray:
         """Times at which the excitation is asked for [s]: from zero until, past the end, it has faded out."""
-        end = self.samples * self.time_step
-        faded = end + TRANSFORM.fades * (self.period - end)
+        faded = self.samples * self.time_step + self._faded_within
         return np.arange(int(np.ceil(faded / self.period * self.solved))) * (self.period / self.solved)
 
     def omega(self, numbers: IntArray | slice = slice(None)) -> ComplexArray:
@@ -193,7 +205,8 @@ class Line:
         """Shortest time from an abrupt change to the next sample of the record [s]; inf if nothing changes so."""
         steps = np.array([change.time for change in given.abrupt]) / self.time_step
         gap = (np.ceil(steps) - steps)[steps < self.samples]
-        return float(np.where(gap > TRANSFORM.rounding, gap, 1.0).min(initial=np.inf)) * self.time_step
+        gap = np.where(gap > TRANSFORM.rounding, np.maximum(gap, TRANSFORM.nearest), 1.0)
+        return float(gap.min(initial=np.inf)) * self.time_step
 
     def spectra(self, given: Given) -> ComplexArray:
         """Transform what drives a system and is zero before t = 0.
@@ -242,7 +255,7 @@ class Line:
         """Let values fade out and transform them; (*case, port, instant) to (…, frequency)."""
         instants, end, step = self.instants, self.samples * self.time_step, self.period / self.solved
         fading = int(np.searchsorted(instants, end))
-        fade = 1.0 - smooth_step((instants[fading:] - end) / (TRANSFORM.fades * (self.period - end)))
+        fade = 1.0 - smooth_step((instants[fading:] - end) / self._faded_within)
         window = step * np.exp(-decay * step * np.arange(self.solved))
         rows = values.reshape(-1, instants.size)
         spectra, together = np.empty((len(rows), self.size), complex), TRANSFORM.together

@@ -97,7 +97,11 @@ def moving_loads(
         if not check.faults and (len(forces) < 2 or not at.size or not points.size):
             check.refuse("force", "must have at least two samples, one load and one observation point")
     prescribed = Forces(
-        given=lambda line: line.given(forces.T), sampled=forces, finest=time_step, jumps=isolated_jumps(forces)
+        given=lambda line: line.given(forces.T),
+        at=lambda times: _between(forces, time_step, times),
+        sampled=forces,
+        finest=time_step,
+        jumps=isolated_jumps(forces),
     )
     return carried(
         Prescribed(guideway=guideway, loads=at, points=points, speed=speed),
@@ -112,6 +116,7 @@ class Forces(NamedTuple):
     """Prescribed forces over time."""
 
     given: Callable[[Line], Given]  # (load, instant) [N]
+    at: Callable[[FloatArray], FloatArray]  # at some times [s], shape (time, load) [N]
     sampled: FloatArray  # at the steps of the record, shape (time, load) [N]
     finest: float = np.inf  # time within which they may change noticeably [s]
     jumps: FloatArray | None = None  # by which each load jumps somewhere within a step, shape (load,) [N]
@@ -159,7 +164,7 @@ def carried(
     line = Line(samples=samples, time_step=time_step, settling=settling)
     progress("sampling", 0.0)
     # What changes sooner than the finest steps tell counts as abrupt.
-    step = min(time_step, max(forces.finest, SAMPLING.per_station * line.period / SAMPLING.most))
+    step = min(time_step, max(forces.finest, SAMPLING.per_station * line.period / SAMPLING.loads.most))
     driven_by = excited(system, forces.given, line, step, truncation=np.inf, wanted=SAMPLING.loads)
     yielding = solve(system, driven_by.omega, driven_by.spectra, progress=progress).deflection
     progress("histories", 0.0)
@@ -172,14 +177,15 @@ def carried(
         error = _relative(np.sqrt((left_out**2).mean(axis=-1)), np.sqrt((deflection**2).mean(axis=-1)))
         deflection, yielding = deflection - left_out, yielding * kept
     critical_speed = float(guideway.critical_speed)
+    hidden = find.not_shown(_beyond(yielding, line.padded // 2), ["deflection"], time_step)
     found = [
         *find.near_critical(abs(speed), critical_speed),
         *findings_of(guideway),
         *find.not_decayed("deflection", wrapped, deflection),
         *find.beyond_truncation(truncation or 0.0, error),
         *find.jumps_within_a_step(_shifted(system, driven_by, forces, deflection), time_step),
-        *find.not_resolved(driven_by.left_out, driven_by.step),
-        *find.not_shown(_beyond(yielding, line.padded // 2), ["deflection"], time_step, kept=False),
+        *find.loads_unresolved(driven_by.left_out, driven_by.step),
+        *hidden,
     ]
     values = {
         "time": line.time,
@@ -188,6 +194,15 @@ def carried(
         "force": forces.sampled,
         "deflection": turned(deflection),
     }
+    if hidden:
+        # What is measured is taken from the response in the steps in which it was solved.
+        finer = int(np.ceil(time_step / driven_by.step))
+        times = time_step / finer * np.arange(samples * finer)
+        values |= {
+            "solved_time": times,
+            "solved_force": forces.at(times),
+            "solved_deflection": turned(_histories(driven_by, yielding, finer)[0]),
+        }
     settings = attributes(
         "loaded",
         "Response of a guideway to prescribed moving loads",
@@ -238,13 +253,22 @@ def isolated_jumps(forces: FloatArray) -> FloatArray:
     return found
 
 
-def _histories(driven_by: Excited, yielding: ComplexArray) -> tuple[FloatArray, FloatArray]:
+def _between(forces: FloatArray, time_step: float, times: FloatArray) -> FloatArray:
+    """Evaluate forces between their samples, as they are solved; past the last sample they stay."""
+    from scipy.interpolate import CubicSpline
+
+    known = time_step * np.arange(len(forces))
+    return CubicSpline(known, forces)(np.minimum(times, known[-1]))
+
+
+def _histories(driven_by: Excited, yielding: ComplexArray, finer: int = 1) -> tuple[FloatArray, FloatArray]:
     """Deflection (point, time) of all parts together, and what of it wraps around (point,)."""
     line = driven_by.line
-    parts, wrapped = line.records(yielding)
+    parts, wrapped = line.records(yielding, finer=finer)
+    time = line.time_step / finer * np.arange(line.samples * finer)
     for part, begins in zip(parts, driven_by.begins, strict=True):
         # Nothing moves before: what is left out of a spectrum comes as a ripple on both sides.
-        part[:, line.time <= begins + TRANSFORM.rounding * line.time_step] = 0.0
+        part[:, time <= begins + TRANSFORM.rounding * line.time_step] = 0.0
     return together(parts), wrapped.sum(axis=0)
 
 
@@ -264,9 +288,14 @@ def _shifted(system: Prescribed, driven_by: Excited, forces: Forces, deflection:
         return 0.0
     line, jumps = driven_by.line, np.diag(forces.jumps)[forces.jumps > 0]
     impulses = (jumps[..., None] * driven_by.fade).astype(complex)
-    answers = line.records(solve(system, driven_by.omega, impulses).deflection).values
+    # At once by half a step of the answer's rate, and never by more than the answer to the jump itself.
+    s = 1j * driven_by.omega
+    rates, steps = (
+        np.abs(line.records(solve(system, driven_by.omega, given).deflection).values).max(axis=-1)
+        for given in (impulses, impulses / s)
+    )
     # Whether several jump at once is not asked.
-    changed = 0.5 * line.time_step * np.sqrt((np.abs(answers).max(axis=-1) ** 2).sum(axis=0))
+    changed = np.sqrt((np.minimum(0.5 * line.time_step * rates, steps) ** 2).sum(axis=0))
     return _relative(changed, np.abs(deflection).max(axis=-1))
 
 

@@ -34,6 +34,8 @@ class Wanted:
     alike: float = 0.0  # [0 to 0.1]
     # Whether every abrupt change is told.
     told: bool = False
+    # Most steps per period, for all ports together. [2**18 to 2**27: time and memory only]
+    most: int = 2**23
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,7 +45,11 @@ class Sampling:
     # Steps from station to station of a profile at first; twice as many, and so on, until they are enough.
     per_station: float = 4.0  # [2 to 8]
     road: Wanted = Wanted(negligible=3e-5, smooth=3e-5)
-    loads: Wanted = Wanted(negligible=1e-4, smooth=1e-9, alike=0.01, told=True)
+    loads: Wanted = Wanted(negligible=1e-4, smooth=1e-7, alike=0.01, told=True, most=2**20)
+    # With more steps for all ports together than these, so many times as much is negligible, and tolerated.
+    many: int = 2**19  # [2**17 to 2**22: time only]
+    costly: float = 5.0  # [1 to 10]
+    less: float = 2.0  # [1 to 3]
     # Where what a road leaves out turns out to be more than this share of the largest value of a channel, less is
     # negligible, and it is solved again.
     tolerated: float = 3e-4  # [1e-4 to 5e-4]
@@ -51,19 +57,18 @@ class Sampling:
     # Where the highest quarter begins; what lies beyond holds at most so many times its energy.
     quarter: float = 0.75  # [a convention]
     beyond: float = 3.0  # [1 to 4]
-    # With four times as many steps the energy there falls to this share of it at most, or else the road begins with
-    # a jump: no step would be fine enough.
-    falling: float = 0.25  # [0.1 to 0.5]
-    # Where every abrupt change is told, finer steps help, unless the system answers the highest frequency of
-    # all with more than this share of its largest answer.
+    # With eight times as many steps the energy there falls to this share of it at most, or else the road begins
+    # with a jump, whose energy falls to an eighth: no step would be fine enough.
+    falling: float = 0.1  # [0.05 to 0.12]
+    # Where every abrupt change is told, finer steps help, unless the system answers the highest frequency of so
+    # many steps with more than this share of its largest answer.
     stiff: float = 0.03  # [0.01 to 0.1]
+    highest: int = 2**22  # [2**20 to 2**24]
     # What is left out of the answer to an abrupt change comes at once, within few periods of the highest frequency:
     # so many radians of it later it has died away. Or it is so small that no instant misses more, relative L2.
     passed: float = 20.0  # [10 to 100]
     at_once: float = 1e-4  # [1e-6 to 1e-4]
-    # Least steps per period, and most for all ports together.
-    least: int = 256  # [64 to 1024]
-    most: int = 2**23  # [2**21 to 2**27: time and memory only]
+    least: int = 256  # steps per period [64 to 1024]
     # Share of the solved frequencies over which the road fades out; and where it changes abruptly: the wider, the
     # sooner what is left out has died away.
     fades: float = 0.1  # [0.05 to 0.2]
@@ -72,6 +77,7 @@ class Sampling:
     # no matter. From the other one on, what a stated truncation changes is computed rather than estimated.
     smallest: float = 1e-3  # [a convention]
     estimated: float = 1e-4  # [1e-5 to 5e-4]
+    affordable: int = 2**15  # frequencies; of more of them it stays an upper estimate [time only]
     # A sampled force jumps where its third differences are those of a jump, up to this share of it, and no others
     # are within so many steps.
     like: float = 0.2  # [0.1 to 0.3]
@@ -92,7 +98,7 @@ class Excited(NamedTuple):
     finest: bool  # whether no finer step would help, or none was to be looked for
     left_out: float  # of any output, relative L2, where no step that is allowed is fine enough
     beyond: FloatArray  # (output,) what lies beyond over what lies in the highest octave that is solved
-    not_shown: FloatArray  # (output,) share of it, relative L2, beyond the Nyquist frequency of the record
+    missing: float  # what of any output is known to be left out, relative L2, where the step is stated
 
     @property
     def step(self) -> float:
@@ -115,6 +121,7 @@ def excited(
     line: Line,
     step: float,
     *,
+    finest: float | None = None,
     truncation: float | None,
     solved_step: float | None = None,
     wanted: Wanted = SAMPLING.road,
@@ -130,7 +137,9 @@ def excited(
     line : Line
         The record.
     step : float
-        From station to station of the profile, or from sample to sample of the forces [s].
+        From station to station of the profile, or from sample to sample of the forces, as a rule [s].
+    finest : float, optional
+        The same where they are closest; None: it is the same everywhere.
     truncation : float, optional
         Frequency beyond which the road counts as rigid [Hz]; None: it is found.
     solved_step : float, optional
@@ -147,7 +156,7 @@ def excited(
     stated = None if solved_step is None else int(np.ceil(0.5 * line.period / solved_step)) + 1
     if stated is not None:
         points = max(points, 2.0 * stated)
-    energies = [np.inf, np.inf]
+    energies = [np.inf, np.inf, np.inf]
     with unthreaded():
         while True:
             line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
@@ -158,16 +167,20 @@ def excited(
             # Beyond this frequency what an abrupt change adds has passed when the next sample is taken.
             passed = int(SAMPLING.passed * line.period / (2 * np.pi * line.clear(driving)))
             at_once = SAMPLING.at_once / np.sqrt(line.size)
-            enough = highest <= wanted.negligible and (passed <= SAMPLING.quarter * line.size or highest <= at_once)
-            if enough or stated is not None or 2 * points * driving.values[..., 0].size > SAMPLING.most:
+            ports = driving.values[..., 0].size
+            negligible = wanted.negligible * (SAMPLING.costly if points * ports > SAMPLING.many else 1.0)
+            enough = highest <= negligible and (passed <= SAMPLING.quarter * line.size or highest <= at_once)
+            if enough or stated is not None or 2 * points * ports > wanted.most:
                 break
-            falls = highest**2 <= SAMPLING.falling * energies[-2]
+            # Before the closest stations are told apart what they hold does not fall.
+            apart = points > 8 * SAMPLING.per_station * line.period / (step if finest is None else finest)
+            falls = not apart or highest**2 <= SAMPLING.falling * energies[-3]
             if not falls and not (wanted.told and _stiffens(system, line, found)):
                 break
             points, energies = 2 * points, [*energies, highest**2]
     fades = SAMPLING.fades_abrupt if driving.abrupt else SAMPLING.fades
     if stated is None:
-        limit = wanted.negligible if driving.abrupt else wanted.smooth
+        limit = negligible if driving.abrupt else max(wanted.smooth, negligible * (negligible > wanted.negligible))
         ends = found.negligible_from(found.whole, limit, magnitudes)
         if passed > ends:
             ends = min(passed, found.negligible_from(found.whole, at_once, magnitudes))
@@ -191,7 +204,7 @@ def excited(
         finest=stated is not None or not enough,
         left_out=0.0 if enough else highest,
         beyond=_beyond(found, ends, count),
-        not_shown=found.shares(line.padded // 2 + 1, count),
+        missing=0.0 if stated is None else found.content(ends),
     )
 
 
@@ -206,6 +219,6 @@ def _beyond(found: Influence, ends: int, count: int) -> FloatArray:
 
 def _stiffens(system: Sized, line: Line, found: Influence) -> bool:
     """Tell whether a system answers the highest frequency of all with little."""
-    highest = replace(line, points=SAMPLING.most)
+    highest = replace(line, points=SAMPLING.highest)
     answered = system.per_unit(highest.omega(slice(highest.size - 1, None)))[1][..., 0]
     return bool((answered <= SAMPLING.stiff * found.whole.gain.max(axis=-1)).all())

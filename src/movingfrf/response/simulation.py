@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import movingfrf.results.findings as find
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
-from movingfrf.response.accuracy import past_the_end, truncated, unresolved
+from movingfrf.response.accuracy import past_the_end, shares_beyond, truncated, unresolved
 from movingfrf.response.line import Given, Line, require_record
-from movingfrf.response.sampling import SAMPLING, excited
+from movingfrf.response.sampling import SAMPLING, Excited, excited
 from movingfrf.response.solve import solve
-from movingfrf.response.survey import survey
-from movingfrf.response.system import System
+from movingfrf.response.survey import SteadyState, survey
+from movingfrf.response.system import CoupledHistories, Response, System
 from movingfrf.results.labels import attributes, labelled, turned
-from movingfrf.roughness.excitation import Touch, excite
+from movingfrf.roughness.excitation import Excitation, Touch, excite
 from movingfrf.roughness.profile import Profile
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
@@ -36,6 +37,9 @@ class Settling:
     # then comes back weakened by the window.
     durations: float = 2.0  # [1 to 16]
     cycles: float = 20.0  # [10 to 100]
+    # The road fades out in so many times the ratio of its last level to its typical rate, that at so many instants.
+    slower: float = 2.0  # [1 to 5]
+    looks: int = 1000  # [200 to 10 000]
 
 
 SETTLING = Settling()
@@ -176,76 +180,41 @@ def driven(
     system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)
     progress("steady state", 0.0)
     surveyed = survey(system)
-    line, wanted = line_of(journey, vehicle), SAMPLING.road
-    for _ in range(SAMPLING.rounds):
-        progress("sampling", 0.0)
-        # One case.
-        driven_by = excited(
-            system,
-            lambda line: Given(excitation.elevation(journey.speed * line.instants)),
-            line,
-            excitation.station / journey.speed,
-            truncation=journey.truncation,
-            solved_step=journey.solved_step,
-            wanted=wanted,
-        )
-        response = solve(
-            system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress
-        )
-        progress("histories", 0.0)
-        histories = response.histories(driven_by.line)
-        left_out = unresolved(driven_by, response, histories)
-        if driven_by.finest or left_out <= SAMPLING.tolerated:
-            break
-        less = wanted.negligible * max(0.5 * SAMPLING.tolerated / left_out, 0.01)
-        wanted = replace(wanted, negligible=less, smooth=less)
-    force, deflection, motion, acceleration = histories
+    driven_by, response, histories, left_out = _solved(system, excitation, journey, progress)
     cut = truncated(system, driven_by, response, histories)
-    guessed = 0.0
-    if excitation.guessed > 0:
-        off = excitation.doubt(journey.speed * driven_by.line.instants)
-        known = max(int((journey.distance - excitation.guessed) / (journey.speed * journey.time_step)), 1)
-        guessed = past_the_end(system, driven_by, Given(off), histories, known)
-    steady = surveyed.steady
-    total = steady.load[:, None] + force.values[0]
+    steady, wheels = surveyed.steady, range(len(vehicle.contacts))
+    beyond = driven_by.line.padded // 2 + 1
+    hidden = find.not_shown(
+        shares_beyond(response, driven_by.omega, beyond),
+        [*(f"contact force {n}" for n in wheels), *(f"acceleration of {name}" for name in vehicle.dof_names)],
+        journey.time_step,
+    )
     found = [
-        *find.contact_lost(turned(total), journey.time_step),
+        *find.contact_lost(turned(steady.load[:, None] + histories.force.values[0]), journey.time_step),
         *surveyed.findings,
         *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
-        *find.not_decayed("vehicle's motion", motion.wrapped, motion.values),
+        *find.not_decayed("vehicle's motion", histories.motion.wrapped, histories.motion.values),
         *find.beyond_truncation(cut.frequency, cut.error),
-        *find.unresolved(left_out, driven_by.step),
-        *find.not_shown(driven_by.not_shown, system.outputs, journey.time_step),
-        *find.profile_ends(guessed, excitation.guessed),
-        *find.grade_taken(excitation.grade),
+        *find.unresolved(left_out, driven_by.step, stated=journey.solved_step is not None),
+        *find.jumps_at_the_start(_jump(excitation, vehicle)),
+        *hidden,
+        *find.profile_ends(_guessed(system, excitation, journey, driven_by, histories), excitation.guessed),
+        *find.graded(*excitation.slopes),
     ]
-    deflected = deflection.values[0]
-    deflected += steady.deflection[:, None]
     values = {
         **journey.coordinates(vehicle),
-        "contact_force": turned(force.values[0]),
         "static_load": steady.load,
-        "deflection": turned(deflected),
         "static_deflection": steady.deflection,
-        "motion": turned(motion.values[0]),
-        "acceleration": turned(acceleration.values[0]),
-        "roughness": turned(excitation.elevation(journey.travelled)),
+        **_records(histories, steady, excitation.elevation(journey.travelled)),
     }
-    if any(finding.code == "beyond_nyquist" for finding in found):
+    if hidden:
         # What is measured is taken from the response in the steps in which it was solved.
         finer = int(np.ceil(journey.time_step / driven_by.step))
-        fine, times = (
-            response.histories(driven_by.line, finer),
-            line.time_step / finer * np.arange(line.samples * finer),
-        )
-        values |= {
-            "solved_time": times,
-            "solved_contact_force": turned(fine.force.values[0]),
-            "solved_deflection": turned(fine.deflection.values[0] + steady.deflection[:, None]),
-            "solved_motion": turned(fine.motion.values[0]),
-            "solved_acceleration": turned(fine.acceleration.values[0]),
-            "solved_roughness": turned(excitation.elevation(journey.speed * times)),
-        }
+        times = journey.time_step / finer * np.arange(journey.samples * finer)
+        fine = response.histories(driven_by.line, finer)
+        seen = excitation.elevation(journey.speed * times)
+        values["solved_time"] = times
+        values |= {f"solved_{name}": value for name, value in _records(fine, steady, seen).items()}
     settings = attributes(
         "coupled",
         "Coupled response of a vehicle and a guideway",
@@ -264,7 +233,76 @@ def driven(
     return labelled(values, settings)
 
 
-def line_of(journey: Journey, vehicle: Vehicle) -> Line:
+def _solved(
+    system: System, excitation: Excitation, journey: Journey, progress: Progress
+) -> tuple[Excited, Response, CoupledHistories, float]:
+    """Solve, for more where what is left out matters to a channel's largest value; and say how much it does."""
+    line, wanted = line_of(journey, system.vehicle, fading=_fading(excitation, journey)), SAMPLING.road
+    for _ in range(SAMPLING.rounds):
+        progress("sampling", 0.0)
+        # One part, one case.
+        driven_by = excited(
+            system,
+            lambda line: Given(excitation.elevation(journey.speed * line.instants)),
+            line,
+            excitation.station / journey.speed,
+            finest=excitation.closest / journey.speed,
+            truncation=journey.truncation,
+            solved_step=journey.solved_step,
+            wanted=wanted,
+        )
+        response = solve(
+            system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress
+        )
+        progress("histories", 0.0)
+        histories = response.histories(driven_by.line)
+        left_out = unresolved(driven_by, response, histories)
+        many = driven_by.line.solved * len(system.vehicle.contacts) > SAMPLING.many
+        tolerated = SAMPLING.tolerated * (SAMPLING.less if many else 1.0)
+        if driven_by.finest or left_out <= tolerated:
+            break
+        less = wanted.negligible * max(0.5 * tolerated / left_out, 0.01)
+        wanted = replace(wanted, negligible=less, smooth=less)
+    return driven_by, response, histories, left_out
+
+
+def _jump(excitation: Excitation, vehicle: Vehicle) -> float:
+    """Largest step at t = 0 that a contact with a dashpot, or a rigid one, meets [m]."""
+    hard = (vehicle.dashpots > 0) | np.isinf(vehicle.springs)
+    return float(np.abs(excitation.elevation(np.zeros(1))[:, 0] * hard).max())
+
+
+def _fading(excitation: Excitation, journey: Journey) -> float:
+    """Time in which the road may fade out past the end of the record [s]: no faster than it rises as a rule."""
+    travelled = np.linspace(0.0, journey.distance, SETTLING.looks)
+    rate = np.sqrt(np.square(excitation.rate(travelled, journey.speed)).mean())
+    level = np.abs(excitation.elevation(travelled[-1:])).max()
+    return float(min(SETTLING.slower * level, SETTLING.durations * journey.duration * rate) / (rate or 1.0))
+
+
+def _guessed(
+    system: System, excitation: Excitation, journey: Journey, driven_by: Excited, histories: CoupledHistories
+) -> float:
+    """Estimate what guesses past the end of the profile change, relative to a channel's largest value."""
+    if excitation.guessed <= 0:
+        return 0.0
+    off = excitation.doubt(journey.speed * driven_by.line.instants)
+    known = max(int((journey.distance - excitation.guessed) / (journey.speed * journey.time_step)), 1)
+    return past_the_end(system, driven_by, Given(off), histories, known)
+
+
+def _records(histories: CoupledHistories, steady: SteadyState, seen: FloatArray) -> dict[str, FloatArray]:
+    """Name the records of a case as in a result."""
+    return {
+        "contact_force": turned(histories.force.values[0]),
+        "deflection": turned(histories.deflection.values[0] + steady.deflection[:, None]),
+        "motion": turned(histories.motion.values[0]),
+        "acceleration": turned(histories.acceleration.values[0]),
+        "roughness": turned(seen),
+    }
+
+
+def line_of(journey: Journey, vehicle: Vehicle, *, fading: float = 0.0) -> Line:
     """Line of frequencies that stands for a journey, with padding for the vehicle to settle in.
 
     Parameters
@@ -273,6 +311,8 @@ def line_of(journey: Journey, vehicle: Vehicle) -> Line:
         How the vehicle travels.
     vehicle : Vehicle
         The vehicle.
+    fading : float
+        Time within which the road fades out, at least [s].
 
     Returns
     -------
@@ -291,4 +331,4 @@ def line_of(journey: Journey, vehicle: Vehicle) -> Line:
         settling = max(settling, min(settled, longest))
     channels = len(vehicle.contacts) + len(vehicle.dof_names)
     require_record(journey.duration, settling, journey.time_step, channels)
-    return Line(samples=journey.samples, time_step=journey.time_step, settling=settling)
+    return Line(samples=journey.samples, time_step=journey.time_step, settling=settling, fading=fading)

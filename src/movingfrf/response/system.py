@@ -124,13 +124,6 @@ class System:
         """Entries of a matrix at one frequency."""
         return self.dynamics.contacts**2
 
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """What each of the outputs of `per_unit` is."""
-        contacts, dofs = self.dynamics.contacts, self.dynamics.dofs
-        kinds = ("contact force", contacts), ("deflection", contacts), ("motion", dofs), ("acceleration", dofs)
-        return tuple(name for name, count in kinds for _ in range(count))
-
     def at(self, omega: ComplexArray) -> Tables:
         """Evaluate both sides at some frequencies [rad/s]."""
         frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)

@@ -25,6 +25,8 @@ class Thresholds:
     # Share of an output, relative L2, that may lie above the Nyquist frequency of its record.
     at_nyquist: float = 0.01
     grade: float = 5e-3  # mean slope of a road
+    jump: float = 1e-6  # of the elevation under a contact [m]
+    sets_out: float = 1.5e-2  # slope of its first metres, beyond the grade
 
 
 THRESHOLDS = Thresholds()
@@ -78,9 +80,7 @@ def one_path(known: bool, paths: Sequence[int], across: FloatArray) -> list[Find
 
 def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Finding]:
     """Compare what wraps around from the end of the padding (*case, port) with records (*case, port, time)."""
-    rows = values.reshape(-1, values.shape[-1])
-    # A product of two rows would wake BLAS's threads, for nothing.
-    size = np.sqrt([np.square(row).mean() for row in rows]).reshape(wrapped.shape)
+    size = np.abs(values).max(axis=-1, initial=0.0)
     size = np.maximum(size, THRESHOLDS.smallest * size.max(initial=0.0))
     left = relative(wrapped, size)
     if left <= THRESHOLDS.tolerated:
@@ -88,9 +88,9 @@ def not_decayed(name: str, wrapped: FloatArray, values: FloatArray) -> list[Find
     return [
         Finding(
             "not_decayed",
-            f"the {name} has not died away at the end of the padded record; up to {left:.1e} of it wraps around to "
-            "the start. More damping, or a longer duration, would let it decay",
-            relative(wrapped, np.abs(values).max(axis=-1, initial=0.0)),
+            f"the {name} has not died away at the end of the padded record; up to {left:.1e} of its largest value "
+            "wraps around to the start. More damping, or a longer duration, would let it decay",
+            left,
         )
     ]
 
@@ -114,31 +114,22 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
     ]
 
 
-def not_shown(shares: FloatArray, names: Sequence[str], time_step: float, *, kept: bool = True) -> list[Finding]:
-    """Shares of outputs, relative L2, above the Nyquist frequency of their record, whose steps are [s].
-
-    Whether the response is kept beside it as it was solved.
-    """
-    share = float(shares.max(initial=0.0))
+def not_shown(shares: FloatArray, names: Sequence[str], time_step: float) -> list[Finding]:
+    """Shares of outputs, relative L2, above the Nyquist frequency of their record, whose steps are [s]."""
+    share, name = float(shares.max(initial=0.0)), names[int(shares.argmax())]
     if share <= THRESHOLDS.at_nyquist:
         return []
-    name = names[int(shares.argmax())]
     return [
         Finding(
             "beyond_nyquist",
             f"{share:.1%} of the root mean square of the {name} lies above {0.5 / time_step:g} Hz, which a record "
-            f"in steps of {time_step:g} s cannot show. Its values are right; "
-            + (
-                "measures and spectra are made of the response as it was solved, which is kept beside it"
-                if kept
-                else "more happens between them, which a shorter time step shows"
-            ),
-            share,
+            f"in steps of {time_step:g} s cannot show. Its values are right; measures and spectra are made of the "
+            "response as it was solved, which is kept beside it",
         )
     ]
 
 
-def not_resolved(left_out: float, solved_step: float) -> list[Finding]:
+def loads_unresolved(left_out: float, solved_step: float) -> list[Finding]:
     """Say what is left out, relative to a record, although it was solved in steps as fine as are allowed [s]."""
     if left_out <= THRESHOLDS.tolerated:
         return []
@@ -167,17 +158,36 @@ def jumps_within_a_step(change: float, time_step: float) -> list[Finding]:
     ]
 
 
-def unresolved(figure: float, solved_step: float) -> list[Finding]:
-    """How much of the largest value may be wrong since no finer step [s] was solved."""
+def unresolved(figure: float, solved_step: float, *, stated: bool) -> list[Finding]:
+    """How much of the largest value may be wrong since no finer step [s] was solved, stated or found."""
     if figure <= THRESHOLDS.tolerated:
         return []
+    why = (
+        f"the stated step of {solved_step:.3g} s leaves out what the contacts see above that"
+        if stated
+        else "a road that begins abruptly is of that kind, and kinks under a dashpot or a rigid contact; blending "
+        "in, a footprint or a smoother profile would help"
+    )
     return [
         Finding(
             "unresolved",
             f"what the contacts see goes on above {0.5 / solved_step:.3g} Hz, up to which it was solved: outputs "
-            f"may be off by {figure:.1e} of their largest value. A road that begins abruptly is of that kind, and "
-            "kinks under a dashpot or a rigid contact; blending in, a footprint or a smoother profile would help",
+            f"may be off by {figure:.1e} of their largest value; {why}",
             figure,
+        )
+    ]
+
+
+def jumps_at_the_start(jump: float) -> list[Finding]:
+    """Step of the road at t = 0 under a dashpot or a rigid contact [m]."""
+    if jump <= THRESHOLDS.jump:
+        return []
+    return [
+        Finding(
+            "jump_at_the_start",
+            f"the road begins with a step of {1e3 * jump:.3g} mm under a contact with a dashpot, or a rigid one: "
+            "its force is unbounded there, and no number for the first instants is right; a blend would help",
+            1.0,
         )
     ]
 
@@ -189,25 +199,33 @@ def profile_ends(figure: float, beyond: float) -> list[Finding]:
     return [
         Finding(
             "profile_ends",
-            f"a footprint reaches {beyond:.3g} m past the end of the profile, where the road is guessed: the last "
-            f"samples may be off by {figure:.1e} of the largest value; a longer profile, or a shorter journey, "
-            "would do without a guess",
+            f"a footprint or a cam reaches {beyond:.3g} m past the end of the profile, where the road is guessed: "
+            f"the last samples may be off by {figure:.1e} of the largest value; a longer profile, or a shorter "
+            "journey, would do without a guess",
             figure,
         )
     ]
 
 
-def grade_taken(grade: float) -> list[Finding]:
-    """Mean slope of the road where the journey begins, which is part of the steady state."""
-    if abs(grade) <= THRESHOLDS.grade:
-        return []
-    return [
-        Finding(
-            "grade",
+def graded(grade: float, slope: float, sets_out: float) -> list[Finding]:
+    """Grade that is part of the steady state, mean slope of the road where the journey begins, and at its start."""
+    found = []
+    if abs(grade) > THRESHOLDS.grade:
+        found.append(
             f"the road begins with a grade of {100 * grade:+.2g} %, on which the vehicle is already travelling: "
-            "elevation and motion are about that line; the load transfer of a vehicle on a slope is not part of it",
+            "elevation and motion are about that line; the load transfer of a vehicle on a slope is not part of it"
         )
-    ]
+    elif abs(slope - grade) > THRESHOLDS.grade:
+        found.append(
+            f"the road begins with a mean slope of {100 * slope:+.2g} %, onto which the vehicle drives: that "
+            "shakes it. With a blend, and 100 m of the profile or more, a grade is part of the steady state"
+        )
+    if abs(sets_out - grade) > THRESHOLDS.sets_out and abs(sets_out - slope) > THRESHOLDS.grade:
+        found.append(
+            f"the road sets out at {100 * sets_out:+.2g} % over its first metres, its grade is "
+            f"{100 * grade:+.2g} %: the vehicle drives onto the difference, which shakes it"
+        )
+    return [Finding("grade", message) for message in found]
 
 
 def with_more(findings: str, more: Iterable[Finding]) -> str:

@@ -50,17 +50,6 @@ COUPLED: dict[str, Label] = {
     "place_deflection": Label(("time", "place"), "m", "deflection of the road at that point, down", optional=True),
 }
 
-# Its records in the steps in which it was solved, where those of the output do not show all of it.
-COUPLED |= {
-    f"solved_{name}": label._replace(
-        dims=tuple("solved_time" if dim == "time" else dim for dim in label.dims),
-        long_name=f"{label.long_name}, as it was solved",
-        optional=True,
-    )
-    for name, label in tuple(COUPLED.items())
-    if label.dims[0] == "time" and not label.optional
-}
-
 # The response of a guideway to prescribed forces.
 LOADED: dict[str, Label] = {
     "time": COUPLED["time"],
@@ -69,6 +58,23 @@ LOADED: dict[str, Label] = {
     "force": Label(("time", "load"), "N", "prescribed force, down"),
     "deflection": Label(("time", "point"), "m", "deflection of the guideway at the observer, down"),
 }
+
+
+def _as_solved(schema: dict[str, Label]) -> dict[str, Label]:
+    """Label records in the steps in which they were solved, where those of the output do not show all of them."""
+    return {
+        f"solved_{name}": label._replace(
+            dims=tuple("solved_time" if dim == "time" else dim for dim in label.dims),
+            long_name=f"{label.long_name}, as it was solved",
+            optional=True,
+        )
+        for name, label in schema.items()
+        if label.dims[0] == "time" and not label.optional
+    }
+
+
+COUPLED |= _as_solved(COUPLED)
+LOADED |= _as_solved(LOADED)
 
 _OVER_FREQUENCY: dict[str, Label] = {
     "frequency": Label(("frequency",), "Hz", "frequency", coordinate=True),
@@ -254,21 +260,26 @@ def labelled(values: Mapping[str, ArrayLike], attributes: Mapping[str, str | flo
 
 
 def resolved(result: xr.Dataset) -> xr.Dataset:
-    """Take a coupled response as it was solved, in finer steps, if it holds that.
+    """Take a response as it was solved, in finer steps, if the result holds that.
 
     Parameters
     ----------
     result : xarray.Dataset
-        The coupled response of a vehicle.
+        A response over time.
 
     Returns
     -------
     xarray.Dataset
         The same variables, and the step among its attributes; the result itself where it shows all of the response.
     """
-    if "solved_time" not in result.dims:
+    if "solved_time" not in result.dims or "time" not in result.dims:
         return result
-    fine = result.drop_dims("time")
+    # Of a part of the record, the same part.
+    step, time, solved = result.attrs["time_step"], result.time.values, result.solved_time.values
+    if not np.allclose(np.diff(time), step, rtol=1e-6):
+        return result
+    inside = (solved > time[0] - 1e-6 * step) & (solved < time[-1] + (1.0 - 1e-6) * step)
+    fine = result.drop_dims("time").isel(solved_time=inside)
     fine = fine.rename({name: name[7:] for name in map(str, fine.variables) if name.startswith("solved_")})
     return fine.assign_attrs(time_step=time_step_of(fine))
 

@@ -44,6 +44,8 @@ class Seeing:
     places: int = 101  # [51 to 1001]
     least: float = 2e-3  # [a convention]
     deviations: float = 2.0  # [a convention]
+    # The road sets out over so many metres.
+    sets_out: float = 15.0  # [m; a convention]
     # How well the road is guessed past the end of a profile is told from so many guesses before it, which lie so
     # many times the length of a guess apart.
     guesses: int = 15  # [7 to 63]
@@ -187,8 +189,12 @@ class Excitation:
         Length over which the profile sets in [m]; 0 leaves it as it is.
     grade : float
         Mean slope of the road at the beginning, about which elevation is counted [m/m].
+    slope, sets_out : float
+        Mean slope there, be it a grade or roughness, and that of the first metres [m/m].
     station : float
         Distance from station to station of the profile, that of most of them on the journey [m].
+    closest : float
+        The same where stations are closest [m], though not closer than a thousandth of it.
     guessed : float
         How far beyond the end of the profile a footprint or a cam reaches on the journey [m].
     """
@@ -198,13 +204,21 @@ class Excitation:
     start: float
     blend: float
     grade: float
+    slope: float
+    sets_out: float
     station: float
+    closest: float
     guessed: float
 
     @property
     def datum(self) -> float:
         """Elevation at the foremost contact's start, on its path [m]."""
         return self.along[self.touch.paths[int(self.touch.positions.argmax())]].datum
+
+    @property
+    def slopes(self) -> tuple[float, float, float]:
+        """Grade, mean slope where the journey begins, and that of the first metres."""
+        return self.grade, self.slope, self.sets_out
 
     @property
     def settings(self) -> dict[str, float]:
@@ -313,10 +327,15 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
     # A profile without columns is the same for all paths.
     column = {path: 0 if profile.same_across else path for path in touch.paths}
     splines = {path: profile.along(path) for path in set(column.values())}
-    grade = grade_of(list(splines.values()), hindmost) if blend else 0.0
+    slope, counts = slope_of(list(splines.values()), hindmost)
+    ahead = min(foremost + SEEING.sets_out, float(profile.stations[-1])) - foremost
+    sets_out = float(np.mean([spline(foremost + ahead) - spline(foremost) for spline in splines.values()])) / ahead
+    grade = slope if blend and counts else 0.0
     known = {path: Along.of(spline, foremost, grade) for path, spline in splines.items()}
     stations = profile.stations
     first, last = np.searchsorted(stations, [hindmost, foremost + distance]).tolist()
+    apart = np.diff(stations[max(first - 1, 0) : last + 1])
+    station = float(np.median(apart))
     reach = float((touch.positions + 0.5 * (touch.footprints + touch.cams)).max())
     return Excitation(
         touch=touch,
@@ -324,13 +343,16 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
         start=start,
         blend=blend,
         grade=grade,
-        station=float(np.median(np.diff(stations[max(first - 1, 0) : last + 1]))),
+        slope=slope,
+        sets_out=sets_out,
+        station=station,
+        closest=float(max(apart.min(), 1e-3 * station)),
         guessed=max(start + distance + reach - float(stations[-1]), 0.0),
     )
 
 
-def grade_of(paths: Sequence[CubicSpline], first: float) -> float:
-    """Mean slope of a road where a journey begins; 0 where it is roughness rather than a grade.
+def slope_of(paths: Sequence[CubicSpline], first: float) -> tuple[float, bool]:
+    """Mean slope of a road where a journey begins, and whether it is a grade rather than roughness.
 
     Parameters
     ----------
@@ -344,16 +366,18 @@ def grade_of(paths: Sequence[CubicSpline], first: float) -> float:
     float
         The median of the slopes over 50 m, within the first 100 m, or as much of it as the profile has [m/m]. It
         depends neither on bumps nor on the duration.
+    bool
+        Whether it is a grade.
     """
     length = min(SEEING.grade_over, min(float(spline.x[-1]) for spline in paths) - first)
     from_here = first + np.linspace(0.0, 0.5 * length, SEEING.places)
     half = 0.5 * length
     slopes = np.array([(spline(from_here + half) - spline(from_here)) / half for spline in paths])
-    grade = float(np.median(slopes))
-    scatter = float(np.median(np.abs(slopes - grade)))
+    slope = float(np.median(slopes))
+    scatter = float(np.median(np.abs(slopes - slope)))
     # Long waves look like a grade to a short profile, all the more the shorter it is.
     least = SEEING.least * (SEEING.grade_over / length) ** 2
-    return grade if abs(grade) > max(least, SEEING.deviations * scatter) else 0.0
+    return slope, abs(slope) > max(least, SEEING.deviations * scatter)
 
 
 def require_cover(profile: Profile, first: float, last: float, paths: Sequence[int]) -> None:

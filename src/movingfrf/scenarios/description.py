@@ -16,7 +16,7 @@ from movingfrf.response.line import TRANSFORM, Line
 from movingfrf.response.simulation import line_of
 from movingfrf.response.survey import survey
 from movingfrf.response.system import System
-from movingfrf.results.findings import grade_taken, near_critical, one_path
+from movingfrf.results.findings import graded, near_critical, one_path
 from movingfrf.roughness.excitation import Excitation, Touch, excite
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
@@ -94,9 +94,9 @@ def described(scenario: Scenario) -> Description:
             of_vehicle, _, vibrations = described_vehicle(vehicle)
             sections += [of_vehicle, contacts, vibrations, ("Roughness", _roughness(road))]
             paths = one_path(road.profile.one_path, vehicle.paths, vehicle.across)
-            graded = grade_taken(_excitation(road, vehicle, scenario.journey).grade)
+            seen = _excitation(road, vehicle, scenario.journey)
             found += [*_remarks_on_vehicle(vehicle, scenario.journey)]
-            found += [finding.message for finding in (*paths, *graded)]
+            found += [finding.message for finding in (*paths, *graded(*seen.slopes))]
         case Passage() as passage:
             sections.append(("Loads", _loads(passage)))
     return Description(sections=[*sections, ("Run", _run(scenario.case))], remarks=found, refusal=refusal)
@@ -292,11 +292,11 @@ def _run(case: Drive | Passage) -> list[tuple[str, str]]:
         case Drive(vehicle=vehicle):
             line = line_of(journey, vehicle)
             channels = len(vehicle.contacts) + len(vehicle.dof_names)
-            through_time = " or ".join(COUPLED_BY)
+            through_time, without = " or ".join(COUPLED_BY), "found"
         case Passage(loads=loads):
             line = Line(samples=journey.samples, time_step=journey.time_step)
             channels = len(loads.positions) + len(loads.observe)
-            through_time = NEWMARK
+            through_time, without = NEWMARK, "none"
     lines = [
         ("speed", f"{journey.speed:g} m/s ({3.6 * journey.speed:g} km/h)"),
         ("travel", f"{journey.duration:g} s over {journey.speed * journey.duration:g} m"),
@@ -305,10 +305,10 @@ def _run(case: Drive | Passage) -> list[tuple[str, str]]:
     if isinstance(case.guideway, FiniteGuideway):
         return [*lines, ("method", f"through time: movingfrf run FILE --method {through_time}")]
     memory = TRANSFORM.bytes_per_sample * channels * line.padded
-    found = "found, as fine as road and system need"
+    found = "found, as fine as road, or loads, and system need"
     return [
         *lines,
         ("solved in steps", found if journey.solved_step is None else f"of {journey.solved_step:g} s"),
-        ("truncation", "found" if journey.truncation is None else f"{journey.truncation:g} Hz"),
+        ("truncation", without if journey.truncation is None else f"{journey.truncation:g} Hz"),
         ("memory", f"about {memory / 2**20:.3g} MiB"),
     ]

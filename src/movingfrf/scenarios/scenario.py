@@ -197,7 +197,7 @@ class Passage:
                 points=self.loads.observe,
                 speed=self.journey.speed,
             ),
-            Forces(given=self.loads.given, sampled=self.forces, finest=self.loads.finest),
+            Forces(given=self.loads.given, at=self.loads.at, sampled=self.forces, finest=self.loads.finest),
             time_step=self.journey.time_step,
             truncation=self.journey.truncation,
             progress=progress,

@@ -380,7 +380,7 @@ def prepared_journey(
                 *steady.findings,
                 *find.contact_lost(force + steady.load, journey.time_step),
                 *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
-                *find.grade_taken(seen.settings["grade"]),
+                *find.graded(*seen.slopes),
             ],
         )
         values = {
@@ -405,6 +405,7 @@ class Seen(NamedTuple):
     roughness: FloatArray  # (time, contact) [m]
     rate: FloatArray  # (time, contact) [m/s]
     settings: dict[str, float]  # datum [m] and grade
+    slopes: tuple[float, float, float]  # grade, mean slope, and that of the first metres
 
 
 def seen_in_time(profile: Profile, vehicle: Vehicle, journey: Journey) -> Seen:
@@ -429,7 +430,9 @@ def seen_in_time(profile: Profile, vehicle: Vehicle, journey: Journey) -> Seen:
     )
     roughness = excitation.elevation(journey.travelled)
     rate = excitation.rate(journey.travelled, journey.speed)
-    return Seen(np.ascontiguousarray(roughness.T), np.ascontiguousarray(rate.T), excitation.settings)
+    return Seen(
+        np.ascontiguousarray(roughness.T), np.ascontiguousarray(rate.T), excitation.settings, excitation.slopes
+    )
 
 
 def steady_travel(march: March, vehicle: Vehicle, steps: int, progress: Progress) -> tuple[Steady, State]:

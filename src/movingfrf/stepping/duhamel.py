@@ -206,7 +206,7 @@ def convolved(
         findings=[
             *find.contact_lost(force + load, time_step),
             *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
-            *find.grade_taken(seen.settings["grade"]),
+            *find.graded(*seen.slopes),
             *road.findings,
         ],
     )
