@@ -159,6 +159,7 @@ def test_past_the_end_of_a_profile_a_footprint_is_a_guess():
     assert 1 / 3 < ratio < 3
 
 
+@pytest.mark.filterwarnings("ignore:the road begins with a mean slope")
 def test_a_road_that_begins_with_a_kink_under_a_dashpot():
     """The force jumps; no step resolves that, and the finding says how much a finer one still changes."""
     ramp = mf.Profile(np.linspace(-5.0, 60.0, 261), 0.01 * np.linspace(-5.0, 60.0, 261))
@@ -253,3 +254,64 @@ def test_what_folds_is_what_samples_see(samples, lines):
         np.testing.assert_allclose(np.fft.irfft(folded(spectra, samples), samples) * samples, wanted, atol=1e-12)
     line = Line(samples=samples, time_step=0.1, points=4 * samples)
     assert line.size == 2 * samples + 1
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_a_narrow_ridge_between_far_stations_is_found():
+    """It is described closely, the road around it is not; a step stated finely tells the force."""
+    stations = np.unique(np.concatenate([np.arange(-5.0, 60.0), 25.0 + 0.004 * np.arange(-3, 4)]))
+    inside = np.abs(stations - 25.0) < 0.0101
+    elevation = np.where(inside, 3e-3 * np.cos(np.pi * (stations - 25.0) / 0.02) ** 2, 0.0)
+    ridge, car = mf.Profile(stations, elevation), mf.quarter_car(**QUARTER_TRUCK)
+    found, fine = (
+        mf.simulate(PAVEMENT, car, ridge, speed=20.0, duration=2.0, solved_step=step) for step in (None, 2e-5)
+    )
+    assert largest(found.contact_force.values, fine.contact_force.values) < 1e-3
+    assert "unresolved" not in codes(found)
+
+
+@pytest.mark.filterwarnings("ignore:the vehicle's motion", "ignore:contact")
+@pytest.mark.parametrize(("stated", "wavelength"), [(5.0, 1.0), (5e-3, 0.1), (2e-2, 0.5)])
+def test_a_stated_step_that_is_too_coarse_is_said(stated, wavelength):
+    """Its figure is within a factor of three of what is missing."""
+    road = mf.harmonic(amplitude=1e-3, wavelength=wavelength, length=80.0, start=-5.0)
+    car, travel = mf.quarter_car(**QUARTER_TRUCK), {"speed": 20.0, "duration": 3.0}
+    with pytest.warns(mf.ValidityWarning, match="the stated step"):
+        coarse = mf.simulate(PAVEMENT, car, road, **travel, solved_step=stated)
+    with np.errstate(all="ignore"):
+        fine = mf.simulate(PAVEMENT, car, road, **travel)
+    figure = next(f["figure"] for f in json.loads(coarse.attrs["findings"]) if f["code"] == "unresolved")
+    off = max(largest(coarse[name].values, fine[name].values) for name in ("contact_force", "acceleration"))
+    assert off / 3 < figure <= 1.0
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_a_part_of_a_record_is_measured_as_that_part():
+    """As it was solved, too."""
+    car = mf.quarter_car(**QUARTER_TRUCK | {"tyre_damping": 5e3})
+    road = mf.realise(mf.IsoRoad.of_class("B", band=(0.02, 4.0)), length=150.0, seed=1)
+    coarse, fine = (
+        mf.simulate(mf.RigidGuideway(), car, road, speed=20.0, duration=6.0, time_step=step)
+        for step in (2e-2, 5e-4)
+    )
+    assert "solved_time" in coarse.dims
+    for part in (slice(0.0, 1.99), slice(2.0, 3.99)):
+        of_both = [mf.dynamic_load_coefficient(result.sel(time=part)) for result in (coarse, fine)]
+        np.testing.assert_allclose(*of_both, rtol=2e-2)
+
+
+@pytest.mark.filterwarnings("ignore:contact", "ignore:the road")
+def test_slopes_that_stay_in_are_said():
+    """On a short profile, without a blend, and where a road sets out at another slope than its grade."""
+    road = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 4.0)), length=205.0, seed=1, start=-5.0)
+    truck, travel = mf.half_car(**HALF_TRUCK), {"speed": 10.0, "duration": 2.0}
+    short = road.stations < 26.0
+    steep = road.columns[:, 0] + 0.01 * road.stations
+    hill = road.columns[:, 0] + 0.05 * np.minimum(road.stations, 40.0)
+    for stations, elevation, words in (
+        (road.stations[short], steep[short], "onto which the vehicle drives"),
+        (road.stations, hill, "sets out at"),
+    ):
+        with pytest.warns(mf.ValidityWarning, match=words):
+            result = mf.simulate(PAVEMENT, truck, mf.Profile(stations, elevation), **travel)
+        assert abs(result.attrs["grade"]) < 0.04

@@ -333,7 +333,7 @@ def test_a_convoy_far_apart_is_each_vehicle_alone():
     road, truck, car = DAMPED["euler_bernoulli_winkler"], VEHICLES["half_truck"], VEHICLES["quarter_truck"]
     profile = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 2.0)), length=280.0, start=-220.0)
     both = mf.convoy([truck, car], spacing=200.0)
-    options = {"speed": 20.0, "duration": 2.0, "solved_step": 1e-3}
+    options = {"speed": 20.0, "duration": 2.0, "solved_step": 1e-4}
     together = mf.simulate(road, both, profile, **options)
     first = mf.simulate(road, truck, profile, **options)
     second = mf.simulate(road, car, profile, start=-200.0, **options)

@@ -41,9 +41,7 @@ FAULTS = [
     ),
     Fault("what folds is mirrored", "response/line.py", "+= np.conj(downward[:, ::-1])", "+= downward[:, ::-1]"),
     Fault("what folds comes once", "response/line.py", "upward[:, within] *= 2.0", "pass"),
-    Fault(
-        "images fold", "response/sampling.py", "enough = highest <= wanted.negligible and (", "enough = True or ("
-    ),
+    Fault("images fold", "response/sampling.py", "enough = highest <= negligible and (", "enough = True or ("),
     Fault(
         "a sharp end of the content",
         "response/sampling.py",
@@ -70,7 +68,10 @@ FAULTS = [
     ),
     Fault("guesses do not matter", "response/simulation.py", "if excitation.guessed <= 0:", "if True:"),
     Fault(
-        "truncation's error as estimated", "response/accuracy.py", "if cut.error <= SAMPLING.estimated:", "if True:"
+        "truncation's error as estimated",
+        "response/accuracy.py",
+        "if cut.error <= SAMPLING.estimated or",
+        "if True or",
     ),
     Fault("whole weight at the start", "response/line.py", "padded[:, 0] *= 0.5", "padded[:, 0] *= 1.0"),
     Fault(

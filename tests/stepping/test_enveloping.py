@@ -41,7 +41,7 @@ def test_cams_over_a_short_hump(name, changes):
     assert relative(plain.contact_force.values, wanted.contact_force.values) > 0.5
 
 
-@pytest.mark.filterwarnings("ignore:a footprint reaches")
+@pytest.mark.filterwarnings("ignore:a footprint or a cam reaches")
 def test_a_footprint_up_to_the_last_sample():
     """On a rough road that ends where the journey ends, a footprint reaches beyond; both see the same there."""
     truck = touching(footprint=0.35)

@@ -45,7 +45,7 @@ class Sampling:
     # Steps from station to station of a profile at first; twice as many, and so on, until they are enough.
     per_station: float = 4.0  # [2 to 8]
     road: Wanted = Wanted(negligible=3e-5, smooth=3e-5)
-    loads: Wanted = Wanted(negligible=1e-4, smooth=1e-7, alike=0.01, told=True, most=2**20)
+    loads: Wanted = Wanted(negligible=1e-4, smooth=1e-9, alike=0.01, told=True, most=2**20)
     # With more steps for all ports together than these, so many times as much is negligible, and tolerated.
     many: int = 2**19  # [2**17 to 2**22: time only]
     costly: float = 5.0  # [1 to 10]

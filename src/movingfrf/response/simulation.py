@@ -203,9 +203,9 @@ def driven(
     ]
     values = {
         **journey.coordinates(vehicle),
+        **_records(histories, steady, excitation.elevation(journey.travelled)),
         "static_load": steady.load,
         "static_deflection": steady.deflection,
-        **_records(histories, steady, excitation.elevation(journey.travelled)),
     }
     if hidden:
         # What is measured is taken from the response in the steps in which it was solved.

@@ -73,8 +73,8 @@ def _as_solved(schema: dict[str, Label]) -> dict[str, Label]:
     }
 
 
-COUPLED |= _as_solved(COUPLED)
-LOADED |= _as_solved(LOADED)
+COUPLED.update(_as_solved(COUPLED))
+LOADED.update(_as_solved(LOADED))
 
 _OVER_FREQUENCY: dict[str, Label] = {
     "frequency": Label(("frequency",), "Hz", "frequency", coordinate=True),
