@@ -78,6 +78,10 @@ SCENARIOS = [
 ]
 SHOWN = ("reports/", "commands/", "results/files", "_basics/wording")
 
+# These first where the fault lies in what is sampled where.
+SAMPLED = ("response/sampling", "response/influence", "response/accuracy", "response/line", "roughness/excitation")
+SAMPLING = ["tests/analytic/test_excitation.py", "tests/analytic/test_sampling.py"]
+
 # These first where the fault lies in the independent way, and last otherwise.
 REFERENCE = [
     "tests/stepping/test_elements.py",
@@ -103,6 +107,8 @@ def selection(fault: Fault | None) -> list[str]:
     file = fault.file if fault else ""
     if file == "_basics/checks.py":
         return ["tests/test_door.py", *SELECTION]
+    if file.startswith(SAMPLED):
+        return [*SAMPLING, *SELECTION, *REFERENCE]
     independent = file.startswith(("stepping/", "guideways/sampled", "guideways/record", "guideways/files"))
     if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE

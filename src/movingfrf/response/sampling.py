@@ -47,12 +47,12 @@ class Sampling:
     road: Wanted = Wanted(negligible=3e-5, smooth=3e-5)
     loads: Wanted = Wanted(negligible=1e-4, smooth=1e-9, alike=0.01, told=True, most=2**20)
     # With more steps for all ports together than these, so many times as much is negligible, and tolerated.
-    many: int = 2**19  # [2**17 to 2**22: time only]
-    costly: float = 5.0  # [1 to 10]
+    many: int = 2**20  # [2**17 to 2**22: time only]
+    costly: float = 3.0  # [1 to 5]
     less: float = 2.0  # [1 to 3]
     # Where what a road leaves out turns out to be more than this share of the largest value of a channel, less is
     # negligible, and it is solved again.
-    tolerated: float = 3e-4  # [1e-4 to 5e-4]
+    tolerated: float = 1.5e-4  # [5e-5 to 3e-4]
     rounds: int = 3  # [2 to 5]
     # Where the highest quarter begins; what lies beyond holds at most so many times its energy.
     quarter: float = 0.75  # [a convention]
