@@ -80,7 +80,7 @@ SHOWN = ("reports/", "commands/", "results/files", "_basics/wording")
 
 # These first where the fault lies in what is sampled where.
 SAMPLED = ("response/sampling", "response/influence", "response/accuracy", "response/line", "roughness/excitation")
-SAMPLING = ["tests/analytic/test_excitation.py", "tests/analytic/test_sampling.py"]
+SAMPLING = ["tests/analytic/test_excitation.py", "tests/analytic/test_sampling.py", "tests/test_honest.py"]
 
 # These first where the fault lies in the independent way, and last otherwise.
 REFERENCE = [

@@ -63,8 +63,8 @@ FAULTS = [
     Fault(
         "nothing is unresolved",
         "response/accuracy.py",
-        "beyond[-motion.shape[-2] :] * largest(",
-        "0 * largest(",
+        "return min(max(peaks, driven_by.missing), 1.0)",
+        "return 0.0",
     ),
     Fault("guesses do not matter", "response/simulation.py", "if excitation.guessed <= 0:", "if True:"),
     Fault(
