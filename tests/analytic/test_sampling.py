@@ -315,3 +315,10 @@ def test_slopes_that_stay_in_are_said():
         with pytest.warns(mf.ValidityWarning, match=words):
             result = mf.simulate(PAVEMENT, truck, mf.Profile(stations, elevation), **travel)
         assert abs(result.attrs["grade"]) < 0.04
+
+
+def test_a_stated_step_that_memory_does_not_hold_is_refused():
+    road = mf.harmonic(amplitude=1e-3, wavelength=1.0, length=80.0, start=-5.0)
+    car = mf.quarter_car(**QUARTER_TRUCK)
+    with pytest.raises(ValueError, match=r"solved in steps of 1e-09 s needs about .* GiB"):
+        mf.simulate(PAVEMENT, car, road, speed=20.0, duration=3.0, solved_step=1e-9)

@@ -206,10 +206,15 @@ def test_a_moving_mass_follows_the_road():
     """It holds m z̈ = −F and z = w − r at every instant, from the result alone."""
     profile = mf.realise(mf.IsoRoad(roughness=4e-6, band=(0.02, 1.0)), length=60.0)
     result = mf.simulate(
-        DAMPED["euler_bernoulli_winkler"], mf.wheelset(mass=2000.0), profile, speed=20.0, duration=2.0
+        DAMPED["euler_bernoulli_winkler"],
+        mf.wheelset(mass=2000.0),
+        profile,
+        speed=20.0,
+        duration=2.0,
+        solved_step=1e-4,
     )
     moved = result.deflection - result.static_deflection - result.roughness
-    assert difference(result.motion.values[:, 0], moved.values[:, 0]) < 3e-9
+    assert difference(result.motion.values[:, 0], moved.values[:, 0]) < 1e-9
     assert difference(result.contact_force.values[:, 0], -2000.0 * result.acceleration.values[:, 0]) < 1e-6
     assert float(result.static_load[0]) == pytest.approx(2000 * 9.81)
 

@@ -31,8 +31,8 @@ FAULTS = [
     Fault(
         "truncation said to leave out nothing",
         "response/moving_loads.py",
-        "error = _relative(",
-        "error = 0.0 * _relative(",
+        "error = find.relative(",
+        "error = 0.0 * find.relative(",
     ),
     Fault(
         "what lies between samples not said", "response/moving_loads.py", "energy[:, shown + 1 :]", "energy[:, :0]"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf.response.influence import quotient
 from movingfrf.response.line import Given
 from movingfrf.response.sampling import SAMPLING, Excited
 from movingfrf.response.solve import solve
@@ -84,8 +85,7 @@ def shares_beyond(response: Response, omega: ComplexArray, first: int) -> FloatA
 
 def _share(part: FloatArray, whole: FloatArray) -> FloatArray:
     """Square root of the quotient of two energies, each whole as large as a small share of the largest at least."""
-    whole = np.maximum(whole, SAMPLING.smallest**2 * whole.max(initial=0.0))
-    return np.sqrt(np.divide(part, whole, out=np.zeros_like(part), where=whole > 0))
+    return np.sqrt(quotient(part, np.maximum(whole, SAMPLING.smallest**2 * whole.max(initial=0.0))))
 
 
 def past_the_end(

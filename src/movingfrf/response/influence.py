@@ -25,6 +25,11 @@ class Sized(Protocol):
         """Entries of a matrix at one frequency."""
         ...
 
+    @property
+    def ports(self) -> int:
+        """Contacts, or loads and points."""
+        ...
+
     def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
         """Say what the guideway adds to each output, and its size, per unit: (port, output, frequency)."""
         ...
@@ -75,7 +80,7 @@ class Influence:
 
     def error(self, kept: int, end: int) -> float:
         """Greatest relative change of any output if the road is rigid from frequency number `kept` to `end`."""
-        return float(np.sqrt(relative(self.added.between(self.starts, kept, end), self.size).max(initial=0.0)))
+        return float(np.sqrt(quotient(self.added.between(self.starts, kept, end), self.size).max(initial=0.0)))
 
     def content(self, first: int) -> float:
         """Greatest share of any output, relative L2, that lies from frequency number `first` on."""
@@ -83,7 +88,7 @@ class Influence:
 
     def shares(self, first: int, end: int) -> FloatArray:
         """Greatest share of each output, relative L2, from frequency number `first` to `end`; shape (output,)."""
-        return np.sqrt(relative(self.whole.between(self.starts, first, end), self.size).max(axis=0))
+        return np.sqrt(quotient(self.whole.between(self.starts, first, end), self.size).max(axis=0))
 
     def negligible_from(self, share: Share, allowed: float, magnitudes: FloatArray) -> int:
         """Find the lowest frequency from which on a share of the outputs is negligible.
@@ -95,7 +100,7 @@ class Influence:
         allowed : float
             What may be left of any output, relative L2.
         magnitudes : ndarray, shape (*case, contact, frequency)
-            Spectra of the elevation under the contacts [m s].
+            Of the spectra of what drives the system.
 
         Returns
         -------
@@ -104,7 +109,7 @@ class Influence:
         """
         limit, total = allowed**2, self.size[:, :, None]
         beyond = np.cumsum(share.energy[:, :, ::-1], axis=2)[:, :, ::-1]
-        harmful_bands = np.flatnonzero((relative(beyond, total) > limit).any(axis=(0, 1)))
+        harmful_bands = np.flatnonzero((quotient(beyond, total) > limit).any(axis=(0, 1)))
         if not harmful_bands.size:
             return 0
         band = int(harmful_bands[-1]) + 1
@@ -116,7 +121,7 @@ class Influence:
         tail = np.cumsum(each[:, :, ::-1], axis=2)[:, :, ::-1]
         if band < len(self.starts):
             tail += beyond[:, :, band, None]
-        harmful = np.flatnonzero((relative(tail, total) > limit).any(axis=(0, 1)))
+        harmful = np.flatnonzero((quotient(tail, total) > limit).any(axis=(0, 1)))
         return int(first + harmful[-1] + 1) if harmful.size else first
 
 
@@ -178,7 +183,7 @@ def influence(
     return Influence(starts=starts, added=shares[0], whole=shares[1], total=total, alike=alike, lines=line.size)
 
 
-def relative(part: FloatArray, whole: FloatArray) -> FloatArray:
+def quotient(part: FloatArray, whole: FloatArray) -> FloatArray:
     """Quotient of two energies; nothing of nothing is nothing."""
     whole = np.broadcast_to(whole, part.shape)
     return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0)

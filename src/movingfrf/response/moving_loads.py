@@ -174,7 +174,7 @@ def carried(
         # What it leaves out is known: nothing else would tell how much that is.
         kept = Truncation(frequency=truncation).taper(driven_by.omega)
         left_out, _ = _histories(driven_by, yielding * (1.0 - kept))
-        error = _relative(np.sqrt((left_out**2).mean(axis=-1)), np.sqrt((deflection**2).mean(axis=-1)))
+        error = find.relative(np.sqrt((left_out**2).mean(axis=-1)), np.sqrt((deflection**2).mean(axis=-1)))
         deflection, yielding = deflection - left_out, yielding * kept
     critical_speed = float(guideway.critical_speed)
     hidden = find.not_shown(_beyond(yielding, line.padded // 2), ["deflection"], time_step)
@@ -296,9 +296,4 @@ def _shifted(system: Prescribed, driven_by: Excited, forces: Forces, deflection:
     )
     # Whether several jump at once is not asked.
     changed = np.sqrt((np.minimum(0.5 * line.time_step * rates, steps) ** 2).sum(axis=0))
-    return _relative(changed, np.abs(deflection).max(axis=-1))
-
-
-def _relative(part: FloatArray, whole: FloatArray) -> float:
-    """Largest quotient of a part and the whole at any point."""
-    return float(np.divide(part, whole, out=np.zeros_like(part), where=whole > 0).max())
+    return find.relative(changed, np.abs(deflection).max(axis=-1))

@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 import scipy.fft
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
 from movingfrf._basics.smooth import smooth_step
 from movingfrf.response.batches import unthreaded
 from movingfrf.response.influence import Influence, Sized, influence
-from movingfrf.response.line import Given, Line
+from movingfrf.response.line import TRANSFORM, Given, Line
 from movingfrf.response.truncation import TRUNCATION, Truncation
 
 
@@ -151,11 +151,20 @@ def excited(
     -------
     Excited
         Spectra of what drives it, and what of them need not be solved.
+
+    Raises
+    ------
+    ValueError
+        If memory would not hold it.
     """
     points = max(SAMPLING.per_station * line.period / step, SAMPLING.least)
     stated = None if solved_step is None else int(np.ceil(0.5 * line.period / solved_step)) + 1
     if stated is not None:
         points = max(points, 2.0 * stated)
+    require_memory(
+        TRANSFORM.bytes_per_sample * system.ports * points,
+        f"a period of {line.period:.4g} s solved in steps of {line.period / points:.3g} s",
+    )
     energies = [np.inf, np.inf, np.inf]
     with unthreaded():
         while True:
@@ -168,7 +177,8 @@ def excited(
             passed = int(SAMPLING.passed * line.period / (2 * np.pi * line.clear(driving)))
             at_once = SAMPLING.at_once / np.sqrt(line.size)
             ports = driving.values[..., 0].size
-            negligible = wanted.negligible * (SAMPLING.costly if points * ports > SAMPLING.many else 1.0)
+            relaxed = SAMPLING.costly if points * ports > SAMPLING.many else 1.0
+            negligible = relaxed * wanted.negligible
             enough = highest <= negligible and (passed <= SAMPLING.quarter * line.size or highest <= at_once)
             if enough or stated is not None or 2 * points * ports > wanted.most:
                 break
@@ -180,7 +190,7 @@ def excited(
             points, energies = 2 * points, [*energies, highest**2]
     fades = SAMPLING.fades_abrupt if driving.abrupt else SAMPLING.fades
     if stated is None:
-        limit = negligible if driving.abrupt else max(wanted.smooth, negligible * (negligible > wanted.negligible))
+        limit = negligible if driving.abrupt else relaxed * wanted.smooth
         ends = found.negligible_from(found.whole, limit, magnitudes)
         if passed > ends:
             ends = min(passed, found.negligible_from(found.whole, at_once, magnitudes))

@@ -124,6 +124,11 @@ class System:
         """Entries of a matrix at one frequency."""
         return self.dynamics.contacts**2
 
+    @property
+    def ports(self) -> int:
+        """Contacts."""
+        return self.dynamics.contacts
+
     def at(self, omega: ComplexArray) -> Tables:
         """Evaluate both sides at some frequencies [rad/s]."""
         frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
@@ -216,6 +221,11 @@ class Prescribed:
     def entries(self) -> int:
         """Entries of a matrix at one frequency."""
         return self.loads.size * self.points.size
+
+    @property
+    def ports(self) -> int:
+        """Loads and points."""
+        return self.loads.size + self.points.size
 
     def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
         """Magnitude of the deflection per unit of each load, (load, point, frequency), all of it the guideway's."""
