@@ -232,3 +232,12 @@ def test_long_record_stays_small():
 )
 def test_numbers_read_well(value, text):
     assert number(value) == text
+
+
+@pytest.mark.parametrize("time_step", [1e-3, 2e-2])
+def test_a_truncation_that_was_not_stated_is_none(time_step):
+    """Whether the solution takes longer steps than the record or shorter ones."""
+    time = time_step * np.arange(round(2.0 / time_step))
+    force = 1e5 * np.sin(np.pi * time / 2.0)[:, None] ** 2
+    result = mf.moving_loads(ROAD, force, [0.0], speed=10.0, time_step=time_step)
+    assert "every frequency of the record is kept" in render(result, guideway=ROAD)

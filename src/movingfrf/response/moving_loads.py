@@ -210,7 +210,8 @@ def carried(
         speed=speed,
         time_step=time_step,
         solved_step=driven_by.step,
-        truncation=0.5 / driven_by.step if truncation is None else truncation,
+        # Where none is stated, whatever steps show: nothing is left out.
+        truncation=0.5 / min(time_step, driven_by.step) if truncation is None else truncation,
         truncation_error=error,
         critical_speed=critical_speed,
         guideway=told(guideway),

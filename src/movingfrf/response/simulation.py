@@ -170,13 +170,7 @@ def driven(
     require_guideway(guideway)
     require_vehicle(vehicle)
     progress("profile", 0.0)
-    excitation = excite(
-        profile,
-        Touch(**vehicle.touching),
-        start=journey.start,
-        distance=journey.distance,
-        blend=journey.blend,
-    )
+    excitation = excitation_of(profile, vehicle, journey)
     system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)
     progress("steady state", 0.0)
     surveyed = survey(system)
@@ -231,6 +225,27 @@ def driven(
         findings=found,
     )
     return labelled(values, settings)
+
+
+def excitation_of(profile: Profile, vehicle: Vehicle, journey: Journey) -> Excitation:
+    """Let a vehicle look at a profile on a journey.
+
+    Parameters
+    ----------
+    profile : Profile
+        Elevation of the road.
+    vehicle : Vehicle
+        The vehicle.
+    journey : Journey
+        How it travels.
+
+    Returns
+    -------
+    Excitation
+        To be asked at any distance travelled.
+    """
+    touch = Touch(**vehicle.touching)
+    return excite(profile, touch, start=journey.start, distance=journey.distance, blend=journey.blend)
 
 
 def _solved(

@@ -122,7 +122,7 @@ class Along(NamedTuple):
         return cls(datum, pieces, float(stations[-1]), length)
 
     def seen(self, distance: FloatArray, footprint: float, cams: float, derivative: int = 0) -> FloatArray:
-        """Average elevation about the datum [m], or its derivatives [m/mⁿ], at ascending distances [m]."""
+        """Average elevation about the datum [m], or its slope [m/m], at ascending distances [m]."""
         if not footprint and not cams:
             found: FloatArray = self.level(distance, derivative)
             return found
@@ -163,7 +163,7 @@ class Along(NamedTuple):
         pieces[3] -= height
         here = PPoly.construct_fast(pieces, places[first : last + 1] - begun)
         # Where it rises, the level is the integral of the slope.
-        integral = here.derivative(derivative - 1) if derivative else here.antiderivative()
+        integral = here if derivative else here.antiderivative()
         at = (distance - begun) + 0.5 * cams * np.array([[-1.0], [1.0]] if cams else [[0.0]])
         half = 0.5 * footprint
         if footprint:

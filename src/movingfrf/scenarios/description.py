@@ -13,11 +13,10 @@ from movingfrf._basics.checks import SolveError
 from movingfrf._basics.welch import welch
 from movingfrf.guideways.guideway import findings_of
 from movingfrf.response.line import TRANSFORM, Line
-from movingfrf.response.simulation import line_of
+from movingfrf.response.simulation import excitation_of, line_of
 from movingfrf.response.survey import survey
 from movingfrf.response.system import System
 from movingfrf.results.findings import graded, near_critical, one_path
-from movingfrf.roughness.excitation import Excitation, Touch, excite
 from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
 from movingfrf.roughness.straight import mean_slope, straight
@@ -94,18 +93,12 @@ def described(scenario: Scenario) -> Description:
             of_vehicle, _, vibrations = described_vehicle(vehicle)
             sections += [of_vehicle, contacts, vibrations, ("Roughness", _roughness(road))]
             paths = one_path(road.profile.one_path, vehicle.paths, vehicle.across)
-            seen = _excitation(road, vehicle, scenario.journey)
+            seen = excitation_of(road.profile, vehicle, scenario.journey)
             found += [*_remarks_on_vehicle(vehicle, scenario.journey)]
             found += [finding.message for finding in (*paths, *graded(*seen.slopes))]
         case Passage() as passage:
             sections.append(("Loads", _loads(passage)))
     return Description(sections=[*sections, ("Run", _run(scenario.case))], remarks=found, refusal=refusal)
-
-
-def _excitation(road: Road, vehicle: Vehicle, journey: Journey) -> Excitation:
-    """Let the vehicle look at its road."""
-    touch = Touch(**vehicle.touching)
-    return excite(road.profile, touch, start=journey.start, distance=journey.distance, blend=journey.blend)
 
 
 def _remarks_on_vehicle(vehicle: Vehicle, journey: Journey) -> list[str]:
