@@ -242,8 +242,8 @@ FAULTS = [
     Fault(
         "no doubt at the end",
         "roughness/excitation.py",
-        "CubicSpline(beyond, off,",
-        "CubicSpline(beyond, 0 * off,",
+        "cubic(beyond, off,",
+        "cubic(beyond, 0 * off,",
     ),
     Fault(
         "contacts abreast",

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import BoolArray, FloatArray, require_memory
 from movingfrf._basics.checks import Checks, checking, real_numbers
+from movingfrf._basics.spline import cubic
 from movingfrf.results.labels import flaws, resolved
 
 if TYPE_CHECKING:
@@ -151,7 +152,6 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
     4.6
     """
     import xarray as xr
-    from scipy.interpolate import CubicSpline
 
     with checking() as check:
         result = check_coupled(check, result)
@@ -170,7 +170,7 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
     found, rest = np.zeros((points.size, numbers.size)), np.zeros(numbers.size)
     for contact, start in enumerate(starts):
         passed = np.clip((points - start) / speed, time[0], time[-1])
-        force = static[contact] + CubicSpline(time, result.contact_force.values[:, contact])(passed)
+        force = static[contact] + cubic(time, result.contact_force.values[:, contact])(passed)
         column = int(np.searchsorted(numbers, paths[contact]))
         found[:, column] += np.maximum(force, 0.0) ** power
         rest[column] += max(static[contact], 0.0) ** power

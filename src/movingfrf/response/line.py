@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory
 from movingfrf._basics.checks import checking
 from movingfrf._basics.smooth import memory, onward, smooth_step
+from movingfrf._basics.spline import cubic
 
 Values = TypeVar("Values", FloatArray, ComplexArray)
 
@@ -180,12 +181,10 @@ class Line:
         Given
             At the instants of the line.
         """
-        from scipy.interpolate import CubicSpline
-
         if self.samples < 4:
             records = np.concatenate([records, np.repeat(records[..., -1:], 4 - self.samples, axis=-1)], axis=-1)
         known = np.arange(records.shape[-1]) * self.time_step
-        spline, instants = CubicSpline(known, records, axis=-1), self.instants
+        spline, instants = cubic(known, records), self.instants
         within = int(np.searchsorted(instants, known[-1], side="right"))
         values = np.empty((*records.shape[:-1], instants.size))
         values[..., :within] = spline(instants[:within])

@@ -12,6 +12,7 @@ import movingfrf.results.findings as find
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.spline import cubic
 from movingfrf.guideways.guideway import Guideway, findings_of, require_guideway, told
 from movingfrf.response.line import TRANSFORM, Given, Line, require_record, together
 from movingfrf.response.sampling import SAMPLING, Excited, excited
@@ -256,10 +257,8 @@ def isolated_jumps(forces: FloatArray) -> FloatArray:
 
 def _between(forces: FloatArray, time_step: float, times: FloatArray) -> FloatArray:
     """Evaluate forces between their samples, as they are solved; past the last sample they stay."""
-    from scipy.interpolate import CubicSpline
-
     known = time_step * np.arange(len(forces))
-    return CubicSpline(known, forces)(np.minimum(times, known[-1]))
+    return cubic(known, forces.T)(np.minimum(times, known[-1])).T
 
 
 def _histories(driven_by: Excited, yielding: ComplexArray, finer: int = 1) -> tuple[FloatArray, FloatArray]:

@@ -12,17 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.enveloping import enveloping
 from movingfrf._basics.smooth import memory, onward, smooth_step, smooth_step_slope
+from movingfrf._basics.spline import Piecewise, cubic
 from movingfrf.roughness.profile import SLACK, Profile
-
-if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline, PPoly
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,20 +88,18 @@ class Along(NamedTuple):
     """One path about its datum and a grade, straight before its beginning, smooth past its end."""
 
     datum: float  # [m]
-    level: PPoly
+    level: Piecewise
     ends: float  # where the profile ends [m]
     fades: float  # over how many metres slope and curvature fade from there on
 
     @classmethod
-    def of(cls, spline: CubicSpline, datum_at: float, grade: float) -> Along:
+    def of(cls, spline: Piecewise, datum_at: float, grade: float) -> Along:
         """Prepare one path of a profile."""
-        from scipy.interpolate import CubicSpline, PPoly
-
         datum, stations = float(spline(datum_at)), spline.x
         level = spline.c.copy()
         level[3] -= datum + grade * (stations[:-1] - datum_at)
         level[2] -= grade
-        about = PPoly.construct_fast(level, stations)
+        about = Piecewise(stations, level)
         # Past the end slope and curvature fade, over a length that adds no frequencies.
         end, slope, curvature = (float(about(stations[-1], order)) for order in range(3))
         extent = stations[-1] - stations[0]
@@ -111,14 +107,14 @@ class Along(NamedTuple):
         length = float(memory(latest[2], 2.0 * latest[1]))
         length = min(max(length, SEEING.fewest * extent / level.shape[1]), SEEING.longest * extent)
         after = np.linspace(0.0, length, SEEING.pieces + 1)
-        fading = CubicSpline(after, end + onward(after, slope, curvature, length), bc_type=((1, slope), (1, 0.0)))
+        fading = cubic(after, end + onward(after, slope, curvature, length), first=slope, last=0.0)
         before, beyond = np.zeros((4, 1)), np.zeros((4, 1))
         before[2, 0], before[3, 0] = level[2, 0], level[3, 0] - level[2, 0]
         beyond[3, 0] = end
         places = np.concatenate(
             [[stations[0] - 1.0], stations, stations[-1] + after[1:], [stations[-1] + length + 1.0]]
         )
-        pieces = PPoly.construct_fast(np.hstack([before, level, fading.c, beyond]), places)
+        pieces = Piecewise(places, np.hstack([before, level, fading.c, beyond]))
         return cls(datum, pieces, float(stations[-1]), length)
 
     def seen(self, distance: FloatArray, footprint: float, cams: float, derivative: int = 0) -> FloatArray:
@@ -132,20 +128,18 @@ class Along(NamedTuple):
             found[some] = self._averaged(distance[some], footprint, cams, derivative)
         return found
 
-    def doubt(self, reach: float) -> CubicSpline:
+    def doubt(self, reach: float) -> Piecewise:
         """How far guesses past the end of a profile are off, over the distance from there [m].
 
         Guesses past places within the profile are off from what is there; an axis of guesses comes first.
         """
-        from scipy.interpolate import CubicSpline
-
         last = self.ends - reach
         span = max(min(SEEING.apart * SEEING.guesses * reach, last - self.level.x[1]), 0.0)
         here = last - span * np.linspace(0.0, 1.0, SEEING.guesses)[:, None]
         beyond = np.linspace(0.0, reach, SEEING.pieces + 1)
         guessed = onward(beyond, self.level(here, 1), self.level(here, 2), self.fades)
         off = guessed - (self.level(here + beyond) - self.level(here))
-        return CubicSpline(beyond, off, axis=1, bc_type=((1, np.zeros(SEEING.guesses)), "not-a-knot"))
+        return cubic(beyond, off, first=0.0)
 
     def _averaged(self, distance: FloatArray, footprint: float, cams: float, derivative: int) -> FloatArray:
         """Average a stretch of it, counted from where that begins and about the level there.
@@ -153,15 +147,13 @@ class Along(NamedTuple):
         The area under a road grows with the road's length and climb, and a difference of two such areas would have
         lost the digits that roughness needs.
         """
-        from scipy.interpolate import PPoly
-
         places, begun, reach = self.level.x, distance[0], 0.5 * (footprint + cams)
         # A stretch may lie beyond all places: there the last piece goes on.
         first = min(max(int(np.searchsorted(places, begun - reach)) - 1, 0), places.size - 2)
         last = max(int(np.searchsorted(places, distance[-1] + reach)), first + 1)
         pieces, height = self.level.c[:, first:last].copy(), self.level(begun)
         pieces[3] -= height
-        here = PPoly.construct_fast(pieces, places[first : last + 1] - begun)
+        here = Piecewise(places[first : last + 1] - begun, pieces)
         # Where it rises, the level is the integral of the slope.
         integral = here if derivative else here.antiderivative()
         at = (distance - begun) + 0.5 * cams * np.array([[-1.0], [1.0]] if cams else [[0.0]])
@@ -351,12 +343,12 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
     )
 
 
-def slope_of(paths: Sequence[CubicSpline], first: float) -> tuple[float, bool]:
+def slope_of(paths: Sequence[Piecewise], first: float) -> tuple[float, bool]:
     """Mean slope of a road where a journey begins, and whether it is a grade rather than roughness.
 
     Parameters
     ----------
-    paths : sequence of CubicSpline
+    paths : sequence of Piecewise
         Elevation along the paths, which count all alike: what they differ by is roughness.
     first : float
         Where the journey begins [m].

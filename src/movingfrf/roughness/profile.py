@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from hashlib import blake2b
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
-
-if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline
+from movingfrf._basics.spline import Piecewise, cubic
 
 # Relative slack in the comparison of lengths that were computed in different ways: more than their rounding, and
 # less than a step, of which a profile that fits into the memory has a thousand million at the most [1e-12 to 1e-9].
@@ -170,7 +167,7 @@ class Profile:
             groups.setdefault(blake2b(column + 0.0).digest(), []).append(path)
         return list(groups.values())
 
-    def along(self, path: int = 0) -> CubicSpline:
+    def along(self, path: int = 0) -> Piecewise:
         """Elevation of one path as a function of distance: the cubic spline through its samples.
 
         Parameters
@@ -180,10 +177,9 @@ class Profile:
 
         Returns
         -------
-        scipy.interpolate.CubicSpline
-            Callable with any array of distances [m] on the profile; gives elevations [m].
+        Piecewise
+            Callable with any array of distances [m] on the profile; gives elevations [m], or with a second argument
+            a derivative of that order.
         """
-        from scipy.interpolate import CubicSpline
-
         elevation = np.asarray(self.elevation)
-        return CubicSpline(self.stations, elevation if elevation.ndim == 1 else elevation[:, path])
+        return cubic(self.stations, elevation if elevation.ndim == 1 else elevation[:, path])

@@ -11,6 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.smooth import smooth_step
+from movingfrf._basics.spline import cubic
 from movingfrf.response.line import Abrupt, Given, Line
 
 # A smooth force at some times [s], or its derivative of an order up to 2 [N, N/s, N/s²].
@@ -298,8 +299,6 @@ def tabulated(*, file: Path, column: int = 1) -> History:
     ValueError
         If the file cannot be read, or lacks the column.
     """
-    from scipy.interpolate import CubicSpline
-
     from movingfrf.roughness.formats.columns import read_numbers
 
     table = read_numbers(file)
@@ -310,9 +309,9 @@ def tabulated(*, file: Path, column: int = 1) -> History:
         column = check.whole("column", column, least=1)
         if not check.faults and column > forces.shape[1]:
             check.refuse("column", f"must be at most {forces.shape[1]}, the columns of {file}, got {column}")
-    spline = CubicSpline(time, forces[:, column - 1])
+    spline = cubic(time, forces[:, column - 1])
     return History(
-        smooth=lambda at, order: np.asarray(spline(at, order)),
+        smooth=spline,
         begins=float(time[0]),
         ends=float(np.nextafter(time[-1], np.inf)),  # the last row counts
         finest=float(np.diff(time).min()),
