@@ -154,7 +154,6 @@ def run(
     with stages:
         stages.report("loading", 0.0)
         import matplotlib.figure  # noqa: F401
-        import scipy.interpolate  # noqa: F401
         import xarray  # noqa: F401
 
         from movingfrf.metrics.measures import measures

@@ -100,18 +100,27 @@ def legend_above(ax: Axes) -> Axes:
         `ax`.
     """
     names = ax.get_legend_handles_labels()[1]
-    # Letters that fit beside each other above a figure of the page, and what a curve's sign takes of them.
-    room, key = 118, 7
     if names:
         ax.legend(
             loc="lower left",
             bbox_to_anchor=(0.0, 1.0),
-            ncols=max(1, min(4, room // (max(map(len, names)) + key))),
+            ncols=_beside(names),
             columnspacing=1.5,
             frameon=False,
             borderaxespad=0.2,
         )
     return ax
+
+
+def _beside(names: Sequence[str]) -> int:
+    """Count the names of a legend that fit beside each other above a figure of the page."""
+    room, key = 118, 7  # letters, and what a curve's sign takes of them
+    return max(1, min(4, room // (max(map(len, names)) + key)))
+
+
+def legend_rows(names: Sequence[str]) -> int:
+    """Count the rows of the legend that `legend_above` makes of some names."""
+    return -(-len(names) // _beside(names)) if names else 0
 
 
 def draw_histories(

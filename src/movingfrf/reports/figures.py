@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from movingfrf.reports.curves import GREY, INK
+from movingfrf.reports.layout import arrange
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,6 +38,7 @@ PAGE_STYLE: dict[Any, Any] = {
     "axes.spines.top": False,
     "axes.titlelocation": "left",
     "axes.titlesize": 10.0,
+    "axes.titley": 1.0,  # told, it is not measured
     "font.size": 10.0,
     "grid.color": "#e3e5e7",
     "grid.linewidth": 0.7,
@@ -72,7 +74,7 @@ def blank(height: float) -> Figure:
     """Make an empty figure of the page's width and some height [inch]."""
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(SIZE.width, height), layout="constrained")
+    return Figure(figsize=(SIZE.width, height))
 
 
 def drawn_svg(figure: Figure, key: str) -> str:
@@ -127,6 +129,7 @@ def inlined(svg: str, key: str, label: str) -> str:
 
 def illustrated(key: str, heading: str, caption: str, figure: Figure) -> Illustration:
     """Turn a figure into an illustration; `key` makes its ids unique on the page."""
+    arrange(figure)
     return Illustration(heading, inlined(drawn_svg(figure, key), key, heading), caption)
 
 

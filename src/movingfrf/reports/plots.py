@@ -321,5 +321,5 @@ def roughness_spectrum(result: xr.Dataset, ax: Axes) -> Axes:
     if not ax.get_legend_handles_labels()[0]:
         note(ax, "the road is next to flat, or the record too short for a spectrum")
     ax.set_xlabel("spatial frequency [cycle/m]")
-    ax.set_ylabel("spectral density $G_d$ [m³]")
+    ax.set_ylabel("spectral density [m³]")
     return ax

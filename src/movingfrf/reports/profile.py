@@ -227,7 +227,7 @@ def _spectra(found: ProfileDescription) -> Illustration:
     ax.minorticks_off()
     draw_classes(ax, np.array([0.01, 10.0]))
     ax.set_xlabel("spatial frequency [cycle/m]")
-    ax.set_ylabel("spectral density $G_d$ [m³]")
+    ax.set_ylabel("spectral density [m³]")
     legend_above(ax)
     caption = (
         "Spectrum of the elevation among the centre lines of the ISO 8608 classes A (smooth) to H (rough); dashed, "

@@ -261,7 +261,7 @@ def _surface(result: xr.Dataset) -> Illustration:
     ax.set_ylim(max(lowest / 10, 1e-3 * SPECTRUM_STYLE.depth * highest), 5 * highest)
     _logarithmic(ax, n)
     draw_classes(ax, ends)
-    ax.set_ylabel("spectral density $G_d$ [m³]")
+    ax.set_ylabel("spectral density [m³]")
     legend_above(ax)
     caption = (
         "Spectral density of the road as the contacts see it, among the centre lines of the ISO 8608 classes A "

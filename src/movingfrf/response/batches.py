@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, wraps
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -31,15 +32,23 @@ class Batch:
 
 BATCH = Batch()
 
+P = ParamSpec("P")
+T = TypeVar("T")
 
-def unthreaded() -> AbstractContextManager[object]:
-    """Keep BLAS and LAPACK to one thread.
+
+def unthreaded(function: Callable[P, T]) -> Callable[P, T]:
+    """Keep BLAS and LAPACK to one thread while a function runs.
 
     Many small matrices and thin products gain nothing by two, take twice the processor's time, and lose tenfold if
     one thread has to wait.
     """
-    limit: AbstractContextManager[object] = _threads().limit(limits=1)
-    return limit
+
+    @wraps(function)
+    def on_one_thread(*args: P.args, **keywords: P.kwargs) -> T:
+        with _threads().limit(limits=1):
+            return function(*args, **keywords)
+
+    return on_one_thread
 
 
 @cache

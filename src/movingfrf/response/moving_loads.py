@@ -14,6 +14,7 @@ from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.spline import cubic
 from movingfrf.guideways.guideway import Guideway, findings_of, require_guideway, told
+from movingfrf.response.batches import unthreaded
 from movingfrf.response.line import TRANSFORM, Given, Line, require_record, together
 from movingfrf.response.sampling import SAMPLING, Excited, excited
 from movingfrf.response.solve import solve
@@ -123,6 +124,7 @@ class Forces(NamedTuple):
     jumps: FloatArray | None = None  # by which each load jumps somewhere within a step, shape (load,) [N]
 
 
+@unthreaded
 def carried(
     system: Prescribed,
     forces: Forces,

@@ -25,6 +25,7 @@ from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.metrics.comfort import WEIGHTING_OF
 from movingfrf.metrics.loads import load_coefficient
+from movingfrf.response.batches import unthreaded
 from movingfrf.response.quadrature import Lines, Unresolved, resolved
 from movingfrf.response.solve import solve
 from movingfrf.response.statistics import lift_off, lifting_off, peak_factor, spectral_rate
@@ -103,6 +104,7 @@ class _Ensemble:
         return np.transpose(vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :], (2, 1, 0))
 
 
+@unthreaded
 def random_response(
     guideway: Guideway,
     vehicle: Vehicle,

@@ -16,7 +16,6 @@ import scipy.fft
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
 from movingfrf._basics.smooth import smooth_step
-from movingfrf.response.batches import unthreaded
 from movingfrf.response.influence import Influence, Sized, influence
 from movingfrf.response.line import TRANSFORM, Given, Line
 from movingfrf.response.truncation import TRUNCATION, Truncation
@@ -166,28 +165,27 @@ def excited(
         f"a period of {line.period:.4g} s solved in steps of {line.period / points:.3g} s",
     )
     energies = [np.inf, np.inf, np.inf]
-    with unthreaded():
-        while True:
-            line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
-            driving = given(line)
-            magnitudes = line.magnitudes(driving)
-            found = influence(system, line, magnitudes, truncation, wanted.alike)
-            highest = found.content(int(SAMPLING.quarter * line.size))
-            # Beyond this frequency what an abrupt change adds has passed when the next sample is taken.
-            passed = int(SAMPLING.passed * line.period / (2 * np.pi * line.clear(driving)))
-            at_once = SAMPLING.at_once / np.sqrt(line.size)
-            ports = driving.values[..., 0].size
-            relaxed = SAMPLING.costly if points * ports > SAMPLING.many else 1.0
-            negligible = relaxed * wanted.negligible
-            enough = highest <= negligible and (passed <= SAMPLING.quarter * line.size or highest <= at_once)
-            if enough or stated is not None or 2 * points * ports > wanted.most:
-                break
-            # Before the closest stations are told apart what they hold does not fall.
-            apart = points > 8 * SAMPLING.per_station * line.period / (step if finest is None else finest)
-            falls = not apart or highest**2 <= SAMPLING.falling * energies[-3]
-            if not falls and not (wanted.told and _stiffens(system, line, found)):
-                break
-            points, energies = 2 * points, [*energies, highest**2]
+    while True:
+        line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
+        driving = given(line)
+        magnitudes = line.magnitudes(driving)
+        found = influence(system, line, magnitudes, truncation, wanted.alike)
+        highest = found.content(int(SAMPLING.quarter * line.size))
+        # Beyond this frequency what an abrupt change adds has passed when the next sample is taken.
+        passed = int(SAMPLING.passed * line.period / (2 * np.pi * line.clear(driving)))
+        at_once = SAMPLING.at_once / np.sqrt(line.size)
+        ports = driving.values[..., 0].size
+        relaxed = SAMPLING.costly if points * ports > SAMPLING.many else 1.0
+        negligible = relaxed * wanted.negligible
+        enough = highest <= negligible and (passed <= SAMPLING.quarter * line.size or highest <= at_once)
+        if enough or stated is not None or 2 * points * ports > wanted.most:
+            break
+        # Before the closest stations are told apart what they hold does not fall.
+        apart = points > 8 * SAMPLING.per_station * line.period / (step if finest is None else finest)
+        falls = not apart or highest**2 <= SAMPLING.falling * energies[-3]
+        if not falls and not (wanted.told and _stiffens(system, line, found)):
+            break
+        points, energies = 2 * points, [*energies, highest**2]
     fades = SAMPLING.fades_abrupt if driving.abrupt else SAMPLING.fades
     if stated is None:
         limit = negligible if driving.abrupt else relaxed * wanted.smooth

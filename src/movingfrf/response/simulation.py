@@ -12,6 +12,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.accuracy import past_the_end, shares_beyond, truncated, unresolved
+from movingfrf.response.batches import unthreaded
 from movingfrf.response.line import Given, Line, require_record
 from movingfrf.response.sampling import SAMPLING, Excited, excited
 from movingfrf.response.solve import solve
@@ -137,6 +138,7 @@ def simulate(
     return driven(guideway, vehicle, profile, journey, progress=progress)
 
 
+@unthreaded
 def driven(
     guideway: Guideway, vehicle: Vehicle, profile: Profile, journey: Journey, *, progress: Progress = silent
 ) -> xr.Dataset:

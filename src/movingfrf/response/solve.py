@@ -10,7 +10,7 @@ import numpy as np
 from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.progress import Progress, silent
-from movingfrf.response.batches import BATCH, unthreaded
+from movingfrf.response.batches import BATCH
 from movingfrf.response.truncation import EVERYWHERE, Truncation
 
 Answer = TypeVar("Answer", bound=tuple[ComplexArray, ...], covariant=True)
@@ -79,21 +79,20 @@ def solve(
     progress("solving", 0.0)
     rows = math.prod(given.shape[:-1])
     step = BATCH.frequencies(max(system.entries, rows))
-    with unthreaded():
-        answer = system.answer(omega[:step], given[..., :step], truncation)
-        if omega.size > step:
-            parts = [np.zeros((*part.shape[:-1], omega.size), complex) for part in answer]
-            ends = [0] * len(parts)
-            for first in range(0, omega.size, step):
-                if first:
-                    some = slice(first, first + step)
-                    answer = system.answer(omega[some], given[..., some], truncation)
-                for number, (whole, part) in enumerate(zip(parts, answer, strict=True)):
-                    if part.shape[-1]:
-                        ends[number] = first + part.shape[-1]
-                        whole[..., first : ends[number]] = part
-                progress("solving", min(first + step, omega.size) / omega.size)
-            answer = type(answer)(*(part[..., :end] for part, end in zip(parts, ends, strict=True)))
+    answer = system.answer(omega[:step], given[..., :step], truncation)
+    if omega.size > step:
+        parts = [np.zeros((*part.shape[:-1], omega.size), complex) for part in answer]
+        ends = [0] * len(parts)
+        for first in range(0, omega.size, step):
+            if first:
+                some = slice(first, first + step)
+                answer = system.answer(omega[some], given[..., some], truncation)
+            for number, (whole, part) in enumerate(zip(parts, answer, strict=True)):
+                if part.shape[-1]:
+                    ends[number] = first + part.shape[-1]
+                    whole[..., first : ends[number]] = part
+            progress("solving", min(first + step, omega.size) / omega.size)
+        answer = type(answer)(*(part[..., :end] for part, end in zip(parts, ends, strict=True)))
     # A sum is finite only if all of its terms are.
     if not all(np.isfinite(part.sum()) for part in answer):
         _refuse(system, omega, answer)

@@ -49,6 +49,7 @@ class Survey:
     findings: tuple[find.Finding, ...]
 
 
+@unthreaded
 def survey(system: System) -> Survey:
     """Look at a system before it is solved.
 
@@ -71,10 +72,9 @@ def survey(system: System) -> Survey:
     findings = [*find.near_critical(system.speed, critical_speed), *findings_of(system.guideway)]
     batch = BATCH.frequencies(system.entries)
     path = stretches(along_the_axis(system.vehicle, system.speed), batch)
-    with unthreaded():
-        tables = system.at_each([np.zeros(1, complex), *path])
-        steady = steady_state(system, next(tables))
-        require_stable(system, tables)
+    tables = system.at_each([np.zeros(1, complex), *path])
+    steady = steady_state(system, next(tables))
+    require_stable(system, tables)
     return Survey(steady=steady, critical_speed=critical_speed, findings=tuple(findings))
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
+from movingfrf.response.batches import unthreaded
 from movingfrf.response.solve import solve
 from movingfrf.response.survey import survey
 from movingfrf.response.system import System
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 BYTES_PER_VALUE = 100
 
 
+@unthreaded
 def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: ArrayLike) -> xr.Dataset:
     """Response of vehicle and road per metre of roughness under each contact.
 
