@@ -12,7 +12,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 TESTS = PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadgroup
 
-.PHONY: demo paper test test-slow test-lowest coverage bench against scale random fuzz honest accuracy faults calls lint format dist picture clean
+.PHONY: demo paper test test-slow test-lowest coverage bench cost against scale random fuzz honest accuracy faults calls lint format dist picture clean
 
 demo: $(READY)
 	@mkdir -p out
@@ -47,6 +47,10 @@ format: $(READY)
 
 bench: $(READY)
 	$(BIN)/python -m benchmarks.bench
+
+# What commands cost, against the imports that they cannot do without.
+cost: $(READY)
+	$(BIN)/python -m benchmarks.cost
 
 # This checkout against another, alternately: make against OLD=../earlier
 against: $(READY)

@@ -92,7 +92,7 @@ import sys, json
 import movingfrf
 before = set(sys.modules)
 loaded = [name for name in movingfrf.__all__ if name in vars(movingfrf)]
-heavy = [name for name in ("numpy", "scipy", "scipy.interpolate", "xarray", "matplotlib") if name in before]
+heavy = [name for name in ("numpy", "scipy", "xarray", "matplotlib") if name in before]
 for name in movingfrf.__all__:
     getattr(movingfrf, name)
 later = [name for name in ("scipy.interpolate", "xarray", "matplotlib") if name in sys.modules]
