@@ -233,4 +233,6 @@ def as_mat(arrays: Mapping[str, Any]) -> bytes:
 
     made = io.BytesIO()
     savemat(made, arrays, oned_as="column")
+    made.seek(0)
+    made.write(b"MATLAB 5.0 MAT-file, written by movingfrf".ljust(116))  # in place of text that tells the time
     return made.getvalue()

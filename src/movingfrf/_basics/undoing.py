@@ -39,10 +39,18 @@ def scratch() -> Iterator[Path]:
     ------
     Path
         The folder.
+
+    Raises
+    ------
+    OSError
+        If it cannot be made, or the block cannot write there; with a name.
     """
     folder = Path(tempfile.mkdtemp(prefix="movingfrf-"))
     with undone(partial(shutil.rmtree, folder, ignore_errors=True)):
-        yield folder
+        try:
+            yield folder
+        except OSError as error:  # a full disk, where a library does not say which
+            raise OSError(error.errno, error.strerror or str(error), error.filename or str(folder)) from None
 
 
 def carried_out(

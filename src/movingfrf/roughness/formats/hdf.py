@@ -6,6 +6,7 @@ file is taken apart in a process of its own.
 
 from __future__ import annotations
 
+import errno
 import json
 import subprocess
 import sys
@@ -67,6 +68,8 @@ def opened(path: Path) -> Iterator[HdfContents]:
     ------
     ValueError
         If it is no such file, or damaged.
+    OSError
+        If there is no room to unpack it.
     """
     size = _require_bounds(path)
     most = UNPACKING.most(size)
@@ -77,6 +80,8 @@ def opened(path: Path) -> Iterator[HdfContents]:
             done = carried_out(command, timeout=LIMITS.patience + size / LIMITS.pace)
         except subprocess.TimeoutExpired:
             raise ValueError("is damaged: reading it comes to no end") from None
+        if done.returncode == 4:
+            raise OSError(errno.ENOSPC, f"there is no room to unpack it in {folder.parent}")
         index = folder / "index.json"
         if done.returncode or not index.exists():
             said = done.stderr.decode("utf-8", "replace").strip().splitlines()
