@@ -51,7 +51,7 @@ def samples(folder: Path) -> dict[str, Path]:
     """Write one file of each format and encoding."""
     road = profile()
     for form in FORMATS.values():
-        for encoding in form.encodings if form.write else ():
+        for encoding in form.encodings if form.made else ():
             name = f"{encoding or 'road'}{form.endings[0]}".replace(" ", "_")
             write_profile(road, folder / name, encoding=encoding or None)
     table = zip(road.stations.tolist(), road.columns.tolist(), strict=True)

@@ -202,7 +202,7 @@ def test_round_trips_are_exact_to_the_precision_of_the_format(tmp_path, name, en
 
 
 def test_every_format_is_tried_and_told_of(capsys):
-    written = [form for form in FORMATS.values() if form.write]
+    written = [form for form in FORMATS.values() if form.made]
     assert {(f"road{form.endings[0]}", encoding or None) for form in written for encoding in form.encodings} == {
         *PRECISION
     }
@@ -213,11 +213,11 @@ def test_every_format_is_tried_and_told_of(capsys):
         for form in FORMATS.values():
             assert form.title in said
             assert form.name in said
-            assert command == "profile" or not form.write or form.endings[0] in said
+            assert command == "profile" or not form.made or form.endings[0] in said
             assert command == "profile" or not any(form.encodings) or f"of {form.name} {form.encodings[0]}" in said
     for form in FORMATS.values():
         assert form.title in mf.read_profile.__doc__
-        assert (form.name in mf.write_profile.__doc__) == (form.write is not None)
+        assert (form.name in mf.write_profile.__doc__) == (form.made is not None)
 
 
 @pytest.mark.parametrize("name", ["road.csv", "road.nc", "road.mat", "road.npz", "road.erd", "road.crg"])

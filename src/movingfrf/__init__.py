@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from movingfrf._basics.ending import heed, is_command
+
+if is_command():
+    heed()  # before anything else is loaded: from here on an interrupt ends in a line
+
 from importlib import import_module
 from typing import Any
 

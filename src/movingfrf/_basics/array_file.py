@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from movingfrf._basics import matlab_file, numpy_file
+from movingfrf._basics.output import write_whole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,19 +89,20 @@ def write_arrays(file: str | Path, arrays: Mapping[str, Any], what: str) -> None
     ------
     ValueError
         If the ending is another one.
+    OSError
+        If the file cannot be written; then what was there is there still.
     """
     path = Path(file)
     if path.suffix.lower() == ".npz":
-        np.savez(path, **arrays)
+        made = numpy_file.as_npz(arrays)
     elif path.suffix.lower() == ".mat":
-        from scipy.io import savemat
-
         # Texts become cells.
         texts = [name for name, array in arrays.items() if np.asarray(array).dtype.kind == "U"]
         cells = {name: np.asarray(arrays[name]).astype(object) for name in texts}
-        savemat(path, {**arrays, **cells}, appendmat=False, oned_as="column")
+        made = matlab_file.as_mat({**arrays, **cells})
     else:
         raise ValueError(f"{path}: {what} is written to .mat or .npz, not to {path.suffix or 'no ending'}")
+    write_whole(path, made)
 
 
 def _read_mat(path: Path, content: Content) -> Arrays:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import struct
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -213,3 +214,25 @@ def recognised(head: bytes) -> bool:
         Whether it says so.
     """
     return head.startswith(b"MATLAB ") and head[126:128] in (b"IM", b"MI")
+
+
+def as_mat(arrays: Mapping[str, Any]) -> bytes:
+    """Make a file of arrays and texts.
+
+    Parameters
+    ----------
+    arrays : dict of str to array_like
+        By name.
+
+    Returns
+    -------
+    bytes
+        The file.
+    """
+    from scipy.io import savemat
+
+    made = io.BytesIO()
+    savemat(made, arrays, oned_as="column")
+    made.seek(0)
+    made.write(b"MATLAB 5.0 MAT-file, written by movingfrf".ljust(116))  # in place of text that tells the time
+    return made.getvalue()

@@ -9,7 +9,7 @@ import re
 import struct
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from typing import IO, Any, NamedTuple
@@ -20,6 +20,24 @@ from movingfrf._basics.matlab_file import UNPACKING
 
 # Types of numbers, truth and text, as NumPy's headers call them.
 KINDS = re.compile(r"[<>|]?(f[248]|[iu][1248]|c8|c16|b1|U[1-9]\d{0,5})")
+
+
+def as_npz(arrays: Mapping[str, Any]) -> bytes:
+    """Make a file of arrays.
+
+    Parameters
+    ----------
+    arrays : dict of str to array_like
+        By name.
+
+    Returns
+    -------
+    bytes
+        The file.
+    """
+    made = io.BytesIO()
+    np.savez(made, **arrays)
+    return made.getvalue()
 
 
 class Stored(NamedTuple):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 import textwrap
 import time
 from dataclasses import dataclass
@@ -12,6 +13,8 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table as Grid
+
+from movingfrf._basics.ending import pending
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -42,6 +45,14 @@ def plain_console() -> Console:
     return console
 
 
+def hand_out(text: str) -> None:
+    """Print what is to become a file: UTF-8, whatever the locale, unless it is only looked at."""
+    if sys.stdout.isatty():
+        sys.stdout.write(text)
+    else:
+        sys.stdout.buffer.write(text.encode())
+
+
 class Stages:
     """Shows which stage a computation is in, if it takes long, and remembers how long each took.
 
@@ -69,11 +80,16 @@ class Stages:
 
     def __enter__(self) -> Stages:
         """Start the clock of the first stage."""
+        pending.append(self._vanish)
         return self
 
     def __exit__(self, *_: object) -> None:
         """End the last stage and take the display away."""
         self.report("", 1.0)
+        self._vanish()
+        pending.remove(self._vanish)
+
+    def _vanish(self) -> None:
         if self._display.live.is_started:
             self._display.stop()
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import os
-import signal
 import sys
+from contextlib import suppress
 
 from cyclopts import CycloptsError
 
 from movingfrf._basics.checks import SolveError
+from movingfrf._basics.ending import heed, ignore, placed, written
 from movingfrf.commands.root import Status, app
 
 # Module → its commands, in the order in which messages list them. A module is loaded when one of its commands is
@@ -47,35 +50,55 @@ def main(arguments: list[str] | None = None) -> int:
     int
         Exit status.
     """
+    placed.clear()
+    said = ""
     try:
         _load_for_help(sys.argv[1:] if arguments is None else arguments)
         app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
-    except KeyboardInterrupt:
-        print("movingfrf: interrupted, nothing was written", file=sys.stderr)
-        return Status.INTERRUPTED
+        sys.stdout.flush()
     except (CycloptsError, ValueError, SolveError) as error:
-        print(f"movingfrf: {error}", file=sys.stderr)
-        return Status.REFUSED
+        said = str(error)
     except MemoryError:
-        print("movingfrf: the case does not fit into the memory of this machine", file=sys.stderr)
-        return Status.REFUSED
+        said = "the case does not fit into the memory of this machine"
     except OSError as error:
-        place = f"{error.filename}: " if error.filename else ""
-        print(f"movingfrf: cannot read or write: {place}{error.strerror or error}", file=sys.stderr)
-        return Status.REFUSED
-    return Status.DONE
+        said = _failed(error)
+    except SystemExit:
+        # So does rich end a process where nobody reads what it prints.
+        said = _failed(BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE)))
+    if not said:
+        return Status.DONE
+    with suppress(OSError):
+        print(f"movingfrf: {said}", file=sys.stderr)
+    return Status.REFUSED
+
+
+def _failed(error: OSError) -> str:
+    """Say what cannot be read or written, and why."""
+    why = error.strerror or str(error)
+    if error.filename:
+        return f"cannot read or write: {error.filename}: {why}"
+    # Every file is named; what fails without a name as only writing does is what is printed.
+    if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EPIPE, errno.EIO):
+        return f"cannot write to standard output: {why}" + (f"; {written()}" if placed else "")
+    return f"cannot read or write: {why}"
 
 
 def entry() -> None:
     """Run the command as a process; told to end, it leaves nothing half done."""
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(Status.TERMINATED))
+    heed()
+    # Not every console has every letter; one that was closed takes nothing.
+    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     status = main()
-    if status == Status.INTERRUPTED:
-        # An interrupt that strikes while a module is being loaded leaves a mark by which Python ends itself with
-        # the signal after all, whatever the status.
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(status)
+    ignore()
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:  # Python would try once more, and say so
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
     sys.exit(status)
 
 

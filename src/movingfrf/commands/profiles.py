@@ -132,23 +132,19 @@ def profile(
     stages = Stages()
     with stages:
         stages.report("reading", 0.0)
+        from movingfrf._basics.output import replacing
         from movingfrf.metrics.profile import as_dict, describe_profile
         from movingfrf.reports.profile import render, tables
-        from movingfrf.results.files import replacing
 
         read, understood = read_as_asked(file, options)
         found = describe_profile(read, progress=stages.report)
         written = []
         if output is not None:
             stages.report("figures", 0.0)
-            texts = {
-                "profile.html": render(found, understood=understood, title=file.name),
-                "profile.json": json.dumps(as_dict(found, understood), indent=1, ensure_ascii=False) + "\n",
-            }
-            with replacing(output) as temporary:
-                for name, text in texts.items():
-                    (temporary / name).write_text(text, encoding="utf-8")
-            written = [output / name for name in texts]
+            with replacing(output) as files:
+                files["profile.html"] = render(found, understood=understood, title=file.name)
+                files["profile.json"] = json.dumps(as_dict(found, understood), indent=1, ensure_ascii=False) + "\n"
+            written = [output / name for name in files]
     console.print(understood, soft_wrap=True)
     for sentence in read.steps:
         console.print(f"- {sentence}", soft_wrap=True)
@@ -188,19 +184,18 @@ def convert(
     stages = Stages()
     with stages:
         stages.report("reading", 0.0)
-        from movingfrf.results.files import replacing
+        from movingfrf._basics.output import replacing
         from movingfrf.roughness.files import writer
 
-        write = writer(target, encoding=encoding)
+        made = writer(target, encoding=encoding)
         if target.exists() and not force:
             raise ValueError(f"{target} exists; choose another name, or --force to replace it")
         read, understood = read_as_asked(file, options)
         stages.report("writing", 0.0)
-        with replacing(target.parent) as temporary:
-            write(read, temporary / target.name)
-            written = sorted(part.name for part in temporary.iterdir())
+        with replacing(target.parent) as files:
+            files |= made(read)
     console.print(understood, soft_wrap=True)
     for sentence in read.steps:
         console.print(f"- {sentence}", soft_wrap=True)
-    for name in written:
+    for name in files:
         console.print(f"wrote {target.parent / name}", soft_wrap=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import warnings
 from functools import partial
 from pathlib import Path
@@ -13,6 +12,7 @@ from cyclopts import Parameter
 from movingfrf._basics.checks import ValidityWarning
 from movingfrf.commands.console import (
     Stages,
+    hand_out,
     listing,
     measures_in_lines,
     plain_console,
@@ -37,15 +37,16 @@ def new(file: Path | None = None, /, *, loads: bool = False, force: bool = False
     force
         Replace the file if it exists and differs.
     """
+    from movingfrf._basics.output import write_whole
     from movingfrf.scenarios.template import template
 
     text = template("loads" if loads else "scenario")
     if file is None:
-        sys.stdout.write(text)
+        hand_out(text)
         return
-    if file.exists() and not force and file.read_text(encoding="utf-8", errors="replace") != text:
+    if file.is_file() and not force and file.read_text(encoding="utf-8", errors="replace") != text:
         raise ValueError(f"{file} exists and differs; choose another name, or --force to replace it")
-    file.write_text(text, encoding="utf-8")
+    write_whole(file, text)
     plain_console().print(f"wrote {file}", soft_wrap=True)
 
 
@@ -156,27 +157,29 @@ def run(
         import matplotlib.figure  # noqa: F401
         import xarray  # noqa: F401
 
+        from movingfrf._basics.netcdf_file import as_netcdf
+        from movingfrf._basics.output import replacing
         from movingfrf.metrics.measures import measures
         from movingfrf.reports.result import render
         from movingfrf.reports.ways import way
-        from movingfrf.results.files import replacing, save, summary_as_json
+        from movingfrf.results.files import summary_as_json
         from movingfrf.scenarios.scenario import Drive
 
         stages.report("scenario", 0.0)
         scenario = _read(file)
         folder = output if output is not None else file.parent / "out" / scenario.name
-        with replacing(folder) as temporary, warnings.catch_warnings():
+        with replacing(folder) as files, warnings.catch_warnings():
             # Findings are printed with the results; no need to warn of them as well.
             warnings.simplefilter("ignore", ValidityWarning)
             result = scenario.run(stages.report, method)
             stages.report("measures", 0.0)
             found = measures(result)
             stages.report("result.nc", 0.0)
-            save(result, temporary / "result.nc")
-            (temporary / "summary.json").write_text(summary_as_json(result, found), encoding="utf-8")
+            files["result.nc"] = as_netcdf(result)
+            files["summary.json"] = summary_as_json(result, found)
             stages.report("report.html", 0.0)
             page = render(result, guideway=scenario.endless, scenario_text=scenario.text, title=scenario.name)
-            (temporary / "report.html").write_text(page, encoding="utf-8")
+            files["report.html"] = page
     if isinstance(scenario.case, Drive):
         console.print(f"Road: {scenario.case.road.description}", soft_wrap=True)
     console.print(f"Method: {way(result).name}\n", soft_wrap=True)
@@ -214,10 +217,12 @@ def random(
     stages = Stages()
     with stages:
         stages.report("loading", 0.0)
+        from movingfrf._basics.netcdf_file import as_netcdf
+        from movingfrf._basics.output import replacing
         from movingfrf.metrics.measures import random_measures
         from movingfrf.reports.random import drawing_frequencies, paths_in_words, render
         from movingfrf.response.random import random_response
-        from movingfrf.results.files import replacing, save, summary_as_json
+        from movingfrf.results.files import summary_as_json
         from movingfrf.results.findings import one_path, with_more
         from movingfrf.scenarios.scenario import Drive
         from movingfrf.scenarios.stepped import require_endless
@@ -234,7 +239,7 @@ def random(
                 "iso_road with the roughness and waviness that `movingfrf check` fits to a measured profile"
             )
         folder = output if output is not None else file.parent / "out" / f"{scenario.name}-random"
-        with replacing(folder) as temporary, warnings.catch_warnings():
+        with replacing(folder) as files, warnings.catch_warnings():
             # Findings are printed with the results; no need to warn of them as well.
             warnings.simplefilter("ignore", ValidityWarning)
             response = partial(
@@ -253,12 +258,11 @@ def random(
             result = result.assign_attrs(scenario=scenario.text, findings=findings)
             drawn = response(frequency=drawing_frequencies(result))
             found = random_measures(result, slope=slope)
-            save(result, temporary / "random.nc")
-            (temporary / "summary.json").write_text(summary_as_json(result, found), encoding="utf-8")
+            files["random.nc"] = as_netcdf(result)
+            files["summary.json"] = summary_as_json(result, found)
             stages.report("report.html", 0.0)
             title = f"{scenario.name}: random road"
-            page = render(result, found, title=title, scenario=scenario.text, drawn=drawn)
-            (temporary / "report.html").write_text(page, encoding="utf-8")
+            files["report.html"] = render(result, found, title=title, scenario=scenario.text, drawn=drawn)
     console.print(f"Spectrum: {result.attrs['spectrum']}; {paths_in_words(result)}\n", soft_wrap=True)
     print_result(console, result, found)
     for name in ("report.html", "random.nc", "summary.json"):
@@ -299,6 +303,7 @@ def measure(
     output
         A file to write the measures to as well: .json or .csv.
     """
+    from movingfrf._basics.output import write_whole
     from movingfrf.metrics.measures import assess
     from movingfrf.results.files import load, measures_as_csv, summary_as_json
 
@@ -319,5 +324,5 @@ def measure(
             if output.suffix == ".csv"
             else summary_as_json(result.assign_attrs(measured_from=since), found)
         )
-        output.write_text(text, encoding="utf-8")
+        write_whole(output, text)
         console.print(f"wrote {output}", soft_wrap=True)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
-from movingfrf.commands.console import plain_console
+from movingfrf.commands.console import hand_out, plain_console
 
 
 def schema(file: Path | None = None, /) -> None:
@@ -19,13 +18,14 @@ def schema(file: Path | None = None, /) -> None:
     file
         The file to write, movingfrf.schema.json for the line above; without it the schema goes to standard output.
     """
+    from movingfrf._basics.output import write_whole
     from movingfrf.scenarios.schema import TITLE, schema_as_json
 
     text = schema_as_json()
     if file is None:
-        sys.stdout.write(text)
+        hand_out(text)
         return
-    if file.exists() and TITLE not in file.read_text(encoding="utf-8", errors="replace"):
+    if file.is_file() and TITLE not in file.read_text(encoding="utf-8", errors="replace"):
         raise ValueError(f"{file} exists and is no schema of scenarios; choose another name")
-    file.write_text(text, encoding="utf-8")
+    write_whole(file, text)
     plain_console().print(f"wrote {file}", soft_wrap=True)

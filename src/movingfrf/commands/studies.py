@@ -40,7 +40,7 @@ def compare(
     stages = Stages()
     with stages:
         stages.report("loading", 0.0)
-        from movingfrf.results.files import replacing
+        from movingfrf._basics.output import replacing
         from movingfrf.scenarios.reading import read_scenario
         from movingfrf.studies.comparison import files as written
         from movingfrf.studies.comparison.comparison import compare as compared
@@ -49,21 +49,19 @@ def compare(
         scenario = read_scenario(file)
         folder = output if output is not None else file.parent / "out" / f"{scenario.name}-compared"
         names = None if methods is None else [name.strip() for name in methods.split(",") if name.strip()]
-        with replacing(folder) as temporary:
+        with replacing(folder) as files:
             found = compared(scenario, names, curve=curve, progress=stages.report)
             stages.report("report.html", 0.0)
-            texts = {
+            files |= {
                 "compare.json": written.as_json(found),
                 "compare.csv": written.table_as_csv(found),
                 "convergence.json": written.convergence_as_json(found),
                 "convergence.csv": written.curve_as_csv(found),
                 "report.html": render(found),
             }
-            for name, text in texts.items():
-                (temporary / name).write_text(text, encoding="utf-8")
     print_tables(console, tables(found))
     print_findings(console, findings(found))
-    for name in texts:
+    for name in files:
         console.print(f"wrote {folder / name}", soft_wrap=True)
 
 
@@ -91,17 +89,17 @@ def paper(
     stages = Stages()
     with stages:
         stages.report("loading", 0.0)
-        from movingfrf.results.files import replacing
+        from movingfrf._basics.output import replacing
         from movingfrf.studies.paper.items import chosen, reproduce
-        from movingfrf.studies.paper.report import verdict_table, write
+        from movingfrf.studies.paper.report import contents, verdict_table
 
         names = None if only is None else [name.strip() for name in only.split(",") if name.strip()]
         chosen(names)
-        with replacing(output) as temporary:
+        with replacing(output) as files:
             found = reproduce(names, quick=quick, progress=stages.report)
             stages.report("writing", 0.0)
-            write(found, temporary, stages.report)
-            written = sorted(file.relative_to(temporary) for file in temporary.rglob("*") if file.is_file())
+            files |= contents(found, stages.report)
+        written = sorted(map(Path, files))
     print_tables(console, [verdict_table(found)])
     for name in written:
         if len(name.parts) == 1:

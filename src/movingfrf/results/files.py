@@ -1,75 +1,21 @@
-"""Results on disk: complete or not at all."""
+"""Results on disk."""
 
 from __future__ import annotations
 
 import csv
-import errno
 import io
 import json
-import os
-import secrets
-import shutil
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from movingfrf._basics.arrays import finite
+from movingfrf._basics.netcdf_file import as_netcdf
+from movingfrf._basics.output import write_whole
 from movingfrf.results.labels import HISTORIES, SCHEMAS, Measure, flaws, kind_of
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-@contextmanager
-def replacing(folder: Path) -> Iterator[Path]:
-    """Lend a temporary folder and move what was written there into `folder` at the end.
-
-    The temporary folder lies inside `folder`, so that a move is a renaming. If the block fails nothing is
-    moved, everything that stood in `folder` stands there still, and a folder made for this goes again.
-
-    Parameters
-    ----------
-    folder : Path
-        Where the files shall appear; made if it does not exist.
-
-    Yields
-    ------
-    Path
-        An empty folder to write into, also into folders within it.
-
-    Raises
-    ------
-    OSError
-        If the folder cannot be made or written.
-    """
-    missing = [parent for parent in (folder, *folder.parents) if not parent.exists()]
-    # Named before it is made: whatever interrupts finds it.
-    temporary, done = folder / f".partial-{secrets.token_hex(4)}", False
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        try:
-            temporary.mkdir()
-            yield temporary
-            written = {file: folder / file.relative_to(temporary) for file in sorted(temporary.rglob("*"))}
-            for file, target in written.items():
-                if target.is_dir() and not file.is_dir():
-                    raise IsADirectoryError(errno.EISDIR, "is a folder", str(target))
-                if target.is_file() and file.is_dir():
-                    raise NotADirectoryError(errno.ENOTDIR, "is a file where a folder is needed", str(target))
-            for file, target in written.items():
-                if file.is_dir():
-                    target.mkdir(exist_ok=True)
-                else:
-                    os.replace(file, target)
-            done = True
-        finally:
-            shutil.rmtree(temporary, ignore_errors=True)
-    finally:
-        if not done:
-            for made in missing:
-                if made.is_dir() and not any(made.iterdir()):
-                    made.rmdir()
 
 
 def save(result: xr.Dataset, file: Path) -> None:
@@ -80,9 +26,14 @@ def save(result: xr.Dataset, file: Path) -> None:
     result : xarray.Dataset
         Any result of the package.
     file : Path
-        The file.
+        The file; replaced if it is there.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written; then what was there is there still.
     """
-    result.to_netcdf(file, engine="h5netcdf")
+    write_whole(file, as_netcdf(result))
 
 
 def load(file: Path) -> xr.Dataset:

@@ -10,6 +10,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ParameterError, checking, option, shown
+from movingfrf._basics.output import Content, behind_links, replacing
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
@@ -35,7 +36,7 @@ FORMATS = {
 def naming_formats(function: Function) -> Function:
     """Put the formats into a docstring, in the place of words in braces, so that it follows from the list."""
     forms = FORMATS.values()
-    written = [form for form in forms if form.write]
+    written = [form for form in forms if form.made]
     said = {
         "{titles}": ", ".join(form.title for form in forms),
         "{names}": ", ".join(form.name for form in forms),
@@ -189,34 +190,33 @@ def write_profile(
     >>> read_profile(path).profile.stations.tolist()
     [0.0, 1.0, 2.0, 3.0]
     """
-    path = Path(file)
-    writer(path, format=format, encoding=encoding)(profile, path)
+    path = behind_links(Path(file))
+    made = writer(path, format=format, encoding=encoding)(profile)
+    with replacing(path.parent) as files:
+        files |= made
 
 
 def writer(
     file: Path, *, format: str | None = None, encoding: str | None = None
-) -> Callable[[Profile, Path], None]:
-    """Find what writes a profile in the format of a file, as `write_profile` does.
-
-    It writes wherever it is told to, while its refusals name `file`.
-    """
+) -> Callable[[Profile], dict[str, Content]]:
+    """Find what makes a profile's files, by their names, in the format that a file shall have."""
     form = FORMATS.get(format) if format is not None else _by_ending(file)
-    written = [other for other in FORMATS.values() if other.write]
+    written = [other for other in FORMATS.values() if other.made]
     if form is None and format is not None:
         known = ", ".join(other.name for other in written)
         raise ValueError(f"{file}: there is no format {format!r}; it is one of {known}")
-    if form is None or form.write is None:
+    if form is None or form.made is None:
         why = "its ending does not tell the format" if form is None else f"{form.name} is only read, not written"
         endings = ", ".join(ending for other in written for ending in other.endings)
         raise ValueError(f"{file}: {why}; written are files that end in {endings}")
     if encoding is not None and encoding not in form.encodings:
         known = ", ".join(filter(None, form.encodings)) or "none"
         raise ValueError(f"{file}: {form.name} has no encoding {encoding!r}; it has {known}")
-    write, chosen = form.write, encoding if encoding is not None else form.encodings[0]
+    make, chosen = form.made, encoding if encoding is not None else form.encodings[0]
 
-    def named(profile: Profile, place: Path) -> None:
+    def named(profile: Profile) -> dict[str, Content]:
         try:
-            write(profile, place, chosen)
+            return {file.name + ending: content for ending, content in make(profile, chosen).items()}
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None
 

@@ -117,7 +117,9 @@ def parse_scenario(
 
 def _text(path: Path) -> str:
     try:
-        return path.read_bytes().decode("utf-8-sig")
+        data = path.read_bytes()
+        # UTF-8; or UTF-16, which PowerShell makes of what is redirected.
+        return data.decode("utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig")
     except OSError as error:
         raise ScenarioError(str(path), [Fault("the file", f"cannot be read: {error.strerror or error}")]) from None
     except UnicodeDecodeError:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import option
+from movingfrf._basics.output import Content
 from movingfrf.roughness.profile import Profile
 
 # A column of a file: its name, or its number counted from 0.
@@ -68,7 +69,8 @@ class Format(NamedTuple):
     endings: tuple[str, ...]
     recognises: Callable[[bytes], bool]  # from the first bytes of a file
     read: Callable[[Path, Sequence[ColumnKey] | None], RawProfile]
-    write: Callable[[Profile, Path, str], None] | None = None
+    # Profile and encoding → files, each by what its name has behind that of the profile's.
+    made: Callable[[Profile, str], dict[str, Content]] | None = None
     encodings: tuple[str, ...] = ("",)  # how it can be written; the first is the default
 
 

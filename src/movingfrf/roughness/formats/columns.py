@@ -5,12 +5,14 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from pathlib import Path
-from typing import NamedTuple, TextIO
+from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.output import Content
 from movingfrf.roughness.formats.base import (
     ColumnKey,
     Format,
@@ -164,36 +166,37 @@ def numbers(data: bytes, encoding: str, layout: ColumnLayout) -> FloatArray:
     return frame.to_numpy()
 
 
-def write(profile: Profile, path: Path, encoding: str = "") -> None:
-    """Write columns with commas between them, each number with all its digits; source and steps are comments."""
+def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
+    """Make columns with commas between them, each number with all its digits; source and steps are comments."""
     elevation = profile.columns
     paths = range(elevation.shape[1])
     names = ["station [m]"] + (
         ["elevation [m]"] if profile.same_across else [f"elevation of path {p} [m]" for p in paths]
     )
     notes = [f"source: {profile.source}"] * bool(profile.source) + list(profile.steps)
-    with path.open("w", encoding="utf-8", newline="\n") as file:
-        file.writelines(f"# {' '.join(note.split())}\n" for note in notes)
-        file.write(",".join(names) + "\n")
-        write_rows(file, [profile.stations, elevation], ",")
+    head = "".join([*(f"# {' '.join(note.split())}\n" for note in notes), ",".join(names), "\n"])
+    return {"": chain([head.encode("utf-8", "replace")], rows([profile.stations, elevation], ","))}
 
 
-def write_rows(file: TextIO, arrays: Sequence[FloatArray], separator: str) -> None:
-    """Write the columns of arrays side by side, each number with all its digits.
+def rows(arrays: Sequence[FloatArray], separator: str) -> Iterator[bytes]:
+    """Lines of text with the columns of arrays side by side, each number with all its digits.
 
     Parameters
     ----------
-    file : text file
-        Where to.
     arrays : sequence of ndarray, shape (row,) or (row, column)
         Numbers, all with the same number of rows.
     separator : str
         What stands between two numbers.
+
+    Yields
+    ------
+    bytes
+        Some lines.
     """
     at_once = 100_000  # rows that are turned into text: as many as fit into memory beside the profile
     for first in range(0, len(arrays[0]), at_once):
         block = np.column_stack([array[first : first + at_once] for array in arrays])
-        file.writelines(separator.join(map(repr, row)) + "\n" for row in block.tolist())
+        yield "".join(separator.join(map(repr, row)) + "\n" for row in block.tolist()).encode()
 
 
 def _as_text(data: bytes) -> tuple[bytes, str]:
@@ -395,5 +398,5 @@ FORMAT = Format(
     (".csv", ".txt", ".tsv", ".dat", ".prn", ".asc"),
     lambda head: False,
     read,
-    write,
+    made,
 )

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from movingfrf._basics.checks import option
+from movingfrf._basics.output import Content
+from movingfrf._basics.undoing import scratch
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
 from movingfrf.roughness.profile import Profile
 
@@ -53,8 +55,8 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     return RawProfile(stations, elevations, _words(road, _encoding(path)), across=across)
 
 
-def write(profile: Profile, path: Path, encoding: str) -> None:
-    """Write a grid along a straight reference line; a road that is the same across becomes a strip 2 m wide."""
+def made(profile: Profile, encoding: str) -> dict[str, Content]:
+    """Make a grid along a straight reference line; a road that is the same across becomes a strip 2 m wide."""
     crg = _library()
     step = profile.require_even("an OpenCRG file")
     across = np.array(profile.across if profile.across is not None else ())
@@ -76,7 +78,9 @@ def write(profile: Profile, path: Path, encoding: str) -> None:
         u_start=float(profile.stations[0]),
         comments=[" ".join(note.split()).encode("ascii", "replace").decode() for note in notes],
     )
-    road.save(path, ENCODINGS[encoding].code)
+    with scratch() as folder:
+        road.save(folder / "road.crg", ENCODINGS[encoding].code)
+        return {"": (folder / "road.crg").read_bytes()}
 
 
 def _library() -> Any:
@@ -116,4 +120,4 @@ def _recognises(head: bytes) -> bool:
     return re.search(rb"^\$(ROAD_CRG|KD_DEFINITION)", head, re.MULTILINE | re.IGNORECASE) is not None
 
 
-FORMAT = Format("crg", "OpenCRG", (".crg",), _recognises, read, write, tuple(ENCODINGS))
+FORMAT = Format("crg", "OpenCRG", (".crg",), _recognises, read, made, tuple(ENCODINGS))

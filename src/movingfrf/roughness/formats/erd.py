@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats.base import (
     ColumnKey,
@@ -81,8 +83,8 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     )
 
 
-def write(profile: Profile, path: Path, encoding: str) -> None:
-    """Write an ERD file: numbers as text in full, or binary beside it."""
+def made(profile: Profile, encoding: str) -> dict[str, Content]:
+    """Make an ERD file: numbers as text in full, or binary beside it."""
     step = profile.require_even("an ERD file")
     elevation = profile.columns
     key = ENCODINGS[encoding]
@@ -102,12 +104,10 @@ def write(profile: Profile, path: Path, encoding: str) -> None:
         *(f"HISTORY {' '.join(sentence.split())}" for sentence in profile.steps),
         "END",
     ]
-    with path.open("w", encoding="latin-1", errors="replace", newline="\n") as file:
-        file.writelines(f"{line.rstrip()}\n" for line in lines)
-        if stored is None:
-            text.write_rows(file, [elevation], " ")
-    if stored is not None:
-        elevation.astype(stored).tofile(f"{path}.bin")
+    head = "".join(f"{line.rstrip()}\n" for line in lines).encode("latin-1", "replace")
+    if stored is None:
+        return {"": chain([head], text.rows([elevation], " "))}
+    return {"": head, ".bin": elevation.astype(stored).tobytes()}
 
 
 def _split(data: bytes) -> tuple[list[str], bytes, int]:
@@ -209,4 +209,4 @@ def _recognises(head: bytes) -> bool:
     return head.startswith(HEADER.signature.encode())
 
 
-FORMAT = Format("erd", "ERD", (".erd",), _recognises, read, write, tuple(ENCODINGS))
+FORMAT = Format("erd", "ERD", (".erd",), _recognises, read, made, tuple(ENCODINGS))

@@ -6,10 +6,10 @@ file is taken apart in a process of its own.
 
 from __future__ import annotations
 
+import errno
 import json
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -21,6 +21,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.matlab_file import UNPACKING
+from movingfrf._basics.undoing import carried_out, scratch
 from movingfrf.roughness.formats.arrays import Array
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -67,19 +68,20 @@ def opened(path: Path) -> Iterator[HdfContents]:
     ------
     ValueError
         If it is no such file, or damaged.
+    OSError
+        If there is no room to unpack it.
     """
     size = _require_bounds(path)
     most = UNPACKING.most(size)
-    with tempfile.TemporaryDirectory(prefix="movingfrf-") as name:
-        folder = Path(name)
+    with scratch() as folder:
         child = Path(__file__).with_name("hdf_child.py")
-        command = [sys.executable, "-P", str(child), str(path.resolve()), name, str(most)]
+        command = [sys.executable, "-P", str(child), str(path.resolve()), str(folder), str(most)]
         try:
-            done = subprocess.run(
-                command, capture_output=True, timeout=LIMITS.patience + size / LIMITS.pace, check=False
-            )
+            done = carried_out(command, timeout=LIMITS.patience + size / LIMITS.pace)
         except subprocess.TimeoutExpired:
             raise ValueError("is damaged: reading it comes to no end") from None
+        if done.returncode == 4:
+            raise OSError(errno.ENOSPC, f"there is no room to unpack it in {folder.parent}")
         index = folder / "index.json"
         if done.returncode or not index.exists():
             said = done.stderr.decode("utf-8", "replace").strip().splitlines()

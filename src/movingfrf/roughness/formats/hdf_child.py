@@ -2,11 +2,12 @@
 
 Arguments: the file, a folder to write into, and the most bytes that all arrays together may have. Writes each array
 of real numbers as 0.npy, 1.npy and so on, and index.json about them. What is wrong with the file goes to standard
-error.
+error, with exit status 3; 4 where the folder has no room.
 """
 
 from __future__ import annotations
 
+import io
 import json
 import sys
 from pathlib import Path
@@ -67,10 +68,20 @@ def extract(file: Path, folder: Path, most: float) -> None:
                     "damaged, or packed so tightly that it must be unpacked elsewhere first"
                 )
             most -= needed
-            np.save(folder / f"{len(listed)}.npy", values(item))
+            made = io.BytesIO()
+            np.save(made, values(item))
+            keep(folder / f"{len(listed)}.npy", made.getbuffer())
             listed.append({"name": name, "shape": item.shape, "unit": text(item.attrs.get("units", ""))})
         attributes = {name: text(opened.attrs.get(name, "")) for name in ("source", "steps")}
-    (folder / "index.json").write_text(json.dumps({"arrays": listed, "attributes": attributes}), encoding="utf-8")
+    keep(folder / "index.json", json.dumps({"arrays": listed, "attributes": attributes}).encode())
+
+
+def keep(place: Path, content: bytes | memoryview) -> None:
+    """Write a file; NumPy would leave a part of it where the disk is full, and say nothing."""
+    try:
+        place.write_bytes(content)
+    except OSError:
+        sys.exit(4)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from movingfrf._basics import matlab_file
+from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import arrays, hdf
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
 from movingfrf.roughness.profile import Profile
@@ -26,16 +27,14 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     )
 
 
-def write(profile: Profile, path: Path, encoding: str = "") -> None:
-    """Write distance, elevation, lateral positions, source and steps as version 5."""
-    from scipy.io import savemat
-
+def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
+    """Hold distance, elevation, lateral positions, source and steps as version 5."""
     names = arrays.ARRAY_NAMES
     values: dict[str, object] = {names.stations: profile.stations[:, None], names.elevations: profile.columns}
     if profile.across is not None:
         values[names.across] = np.array(profile.across)[None, :]
     values |= {"source": profile.source, "steps": "\n".join(profile.steps)}
-    savemat(path, values, appendmat=False, oned_as="column")
+    return {"": matlab_file.as_mat(values)}
 
 
-FORMAT = Format("mat", "MATLAB", (".mat",), matlab_file.recognised, read, write)
+FORMAT = Format("mat", "MATLAB", (".mat",), matlab_file.recognised, read, made)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from movingfrf._basics.netcdf_file import as_netcdf
+from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import arrays, hdf
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
 from movingfrf.roughness.profile import Profile
@@ -21,8 +23,8 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     return found._replace(source=source, steps=tuple(step for step in steps.split(BETWEEN) if step))
 
 
-def write(profile: Profile, path: Path, encoding: str = "") -> None:
-    """Write distance, elevation, lateral positions, source and steps."""
+def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
+    """Hold distance, elevation, lateral positions, source and steps."""
     import xarray as xr
 
     dims = ("distance",) if profile.same_across else ("distance", "path")
@@ -34,9 +36,7 @@ def write(profile: Profile, path: Path, encoding: str = "") -> None:
         variables["across"] = xr.Variable(("path",), list(profile.across), words)
     distance = xr.Variable(("distance",), profile.stations, {"units": "m", "long_name": "distance along the road"})
     attributes = {"source": profile.source, "steps": BETWEEN.join(profile.steps)}
-    xr.Dataset(variables, {"distance": distance}, attributes).to_netcdf(path, engine="h5netcdf")
+    return {"": as_netcdf(xr.Dataset(variables, {"distance": distance}, attributes))}
 
 
-FORMAT = Format(
-    "netcdf", "netCDF", (".nc", ".nc4", ".h5"), lambda head: head.startswith(hdf.SIGNATURE), read, write
-)
+FORMAT = Format("netcdf", "netCDF", (".nc", ".nc4", ".h5"), lambda head: head.startswith(hdf.SIGNATURE), read, made)

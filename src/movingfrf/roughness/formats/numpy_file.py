@@ -11,6 +11,7 @@ import numpy as np
 
 from movingfrf._basics import numpy_file
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import arrays
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
 from movingfrf.roughness.profile import Profile
@@ -43,15 +44,14 @@ def _text(stored: numpy_file.Stored | None) -> str:
     return text
 
 
-def write(profile: Profile, path: Path, encoding: str = "") -> None:
-    """Write distance, elevation, lateral positions, source and steps."""
+def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
+    """Hold distance, elevation, lateral positions, source and steps."""
     names = arrays.ARRAY_NAMES
     values: dict[str, Any] = {names.stations: profile.stations, names.elevations: np.asarray(profile.elevation)}
     if profile.across is not None:
         values[names.across] = np.array(profile.across)
     values |= {"source": np.array(profile.source), "steps": np.array("\n".join(profile.steps))}
-    with path.open("wb") as file:  # NumPy appends an ending to a name that lacks it
-        np.savez(file, **values)
+    return {"": numpy_file.as_npz(values)}
 
 
 FORMAT = Format(
@@ -60,5 +60,5 @@ FORMAT = Format(
     (".npz",),
     lambda head: head.startswith(b"PK\x03\x04") and b".npy" in head[:300],
     read,
-    write,
+    made,
 )

@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import math
 import statistics
-import subprocess
 import sys
 import time
 import tracemalloc
@@ -25,6 +24,7 @@ from threadpoolctl import threadpool_limits
 
 from movingfrf._basics.checks import ValidityWarning
 from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.undoing import carried_out
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Drive, Scenario, shortened
 from movingfrf.scenarios.stepped import elements
@@ -323,9 +323,11 @@ def peak_memory(name: str, case: Case) -> int:
         "around": case.around,
     }
     command = [sys.executable, "-m", "movingfrf.studies.comparison.comparison"]
-    done = subprocess.run(command, input=json.dumps(asked), capture_output=True, text=True, check=False)
+    done = carried_out(command, json.dumps(asked).encode())
     if done.returncode:
-        raise RuntimeError(f"measuring the memory of {name} failed: {done.stderr[-2000:]}")
+        raise RuntimeError(
+            f"measuring the memory of {name} failed: {done.stderr[-2000:].decode('utf-8', 'replace')}"
+        )
     return int(done.stdout)
 
 

@@ -7,10 +7,10 @@ import io
 import json
 import math
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from movingfrf._basics.arrays import finite
+from movingfrf._basics.output import Content
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.version import VERSION
 from movingfrf._basics.wording import number
@@ -51,39 +51,34 @@ def command_of(key: str, quick: bool) -> str:
     return f"movingfrf paper --only {key}{' --quick' if quick else ''} --output out/{key}"
 
 
-def write(found: Reproduction, folder: Path, progress: Progress = silent) -> None:
-    """Write the page, figures, tables and numbers into a folder.
+def contents(found: Reproduction, progress: Progress = silent) -> dict[str, Content]:
+    """Make the page, figures, tables and numbers.
 
     Parameters
     ----------
     found : Reproduction
         What was computed.
-    folder : Path
-        An existing folder.
     progress : callable
         Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    dict of str to str or bytes
+        Files by their names, in folders.
     """
-    folders = ("figures", "tables", "scenarios")
-    for name in folders:
-        (folder / name).mkdir()
+    files: dict[str, Content] = {}
     drawings: dict[str, str] = {}
     plots = [plot for outcome in found.outcomes.values() for plot in outcome.plots]
     with journal():
         for n, plot in enumerate(plots):
             progress("figures", n / len(plots))
-            drawings[plot.name], bitmap = drawn(plot.figure, plot.name)
-            (folder / "figures" / f"{plot.name}.svg").write_text(drawings[plot.name], encoding="utf-8")
-            (folder / "figures" / f"{plot.name}.png").write_bytes(bitmap)
-    (folder / "report.html").write_text(as_html(found, drawings), encoding="utf-8")
+            drawings[plot.name], files[f"figures/{plot.name}.png"] = drawn(plot.figure, plot.name)
+            files[f"figures/{plot.name}.svg"] = drawings[plot.name]
+    files["report.html"] = as_html(found, drawings)
     for outcome in found.outcomes.values():
-        for table in outcome.tables:
-            (folder / "tables" / f"{table.name}.csv").write_text(as_csv(table), encoding="utf-8")
-    for name in SCENARIOS:
-        (folder / "scenarios" / f"{name}.toml").write_text(scenario(name).text, encoding="utf-8")
-    (folder / "paper.json").write_text(as_json(found), encoding="utf-8")
-    for name in folders:
-        if not any((folder / name).iterdir()):
-            (folder / name).rmdir()
+        files |= {f"tables/{table.name}.csv": as_csv(table) for table in outcome.tables}
+    files |= {f"scenarios/{name}.toml": scenario(name).text for name in SCENARIOS}
+    return files | {"paper.json": as_json(found)}
 
 
 def as_html(found: Reproduction, drawings: Mapping[str, str]) -> str:
