@@ -14,6 +14,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -58,7 +59,7 @@ rail = mf.track(
 )
 spectrum = mf.IsoRoad.of_class("A", band=(0.01, 6.0))
 profile = mf.realise(spectrum, length=270.0, start=-20.0)
-vehicles = {"half truck": mf.catalogue("half_truck"), "semitrailer": mf.catalogue("tractor_semitrailer")}
+vehicles = {"half truck": mf.catalogue(name="half_truck"), "semitrailer": mf.catalogue(name="tractor_semitrailer")}
 lines = np.linspace(0.1, 70.0, 2000)
 cases = {}
 for name, vehicle in vehicles.items():
@@ -111,7 +112,12 @@ def threads(folder: Path) -> list[tuple[str, float, float, float]]:
         for number, found in several.items():
             environment = os.environ | {"OMP_NUM_THREADS": number, "OPENBLAS_NUM_THREADS": number}
             ran = subprocess.run(
-                [sys.executable, "-c", SOLVING], cwd=folder, env=environment, capture_output=True, text=True, check=True
+                [sys.executable, "-c", SOLVING],
+                cwd=folder,
+                env=environment,
+                capture_output=True,
+                text=True,
+                check=True,
             )
             found.append(json.loads(ran.stdout))
     one, two = (
@@ -126,15 +132,18 @@ def main() -> int:
         folder = Path(place)
         subprocess.run([sys.executable, "-m", "movingfrf", "new", "case.toml"], cwd=folder, check=True)
         dear = False
-        for heading, rows in (
-            ("command, one thread", commands(folder, "1")),
-            ("command, two threads", commands(folder, "2")),
-            ("two threads against one", threads(folder)),
+        for heading, measured in (
+            ("command, one thread", partial(commands, folder, "1")),
+            ("command, two threads", partial(commands, folder, "2")),
+            ("two threads against one", partial(threads, folder)),
         ):
+            rows = measured()
             print(f"{heading:36s} processor time   ratio   at most")
             for name, seconds, ratio, most in rows:
                 dear |= ratio > most
-                print(f"{name:36s} {1e3 * seconds:11.1f} ms {ratio:7.2f} {most:9.1f}{'  !' if ratio > most else ''}")
+                print(
+                    f"{name:36s} {1e3 * seconds:11.1f} ms {ratio:7.2f} {most:8.1f}{'  !' if ratio > most else ''}"
+                )
             print()
     return int(dear)
 

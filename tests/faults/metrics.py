@@ -60,9 +60,7 @@ FAULTS = [
         "np.arange(1, len(energy)) - 2 * steps, 0)",
     ),
     Fault("rear axle first", "metrics/loads.py", "(points - start) / speed", "(points + start) / speed"),
-    Fault(
-        "static load forgotten", "metrics/loads.py", "force = static[contact] + cubic", "force = cubic"
-    ),
+    Fault("static load forgotten", "metrics/loads.py", "force = static[contact] + cubic", "force = cubic"),
     Fault("tension wears", "metrics/loads.py", "np.maximum(force, 0.0) ** power", "np.abs(force) ** power"),
     Fault("paths added up", "metrics/loads.py", "np.searchsorted(numbers, paths[contact])", "0 * paths[contact]"),
     Fault(

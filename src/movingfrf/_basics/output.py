@@ -18,7 +18,7 @@ Content = str | bytes | Iterable[bytes]
 
 
 @contextmanager
-def replacing(folder: Path) -> Iterator[dict[str, Content]]:
+def replacing(folder: Path) -> Iterator[dict[str, Content | None]]:
     """Collect files and put them in place at the end of the block, all of them or none.
 
     That the folder can be written shows at the beginning. If the block fails, or the disk is full, everything that
@@ -31,8 +31,9 @@ def replacing(folder: Path) -> Iterator[dict[str, Content]]:
 
     Yields
     ------
-    dict of str to str, bytes or iterable of bytes
-        Empty; takes the files by their names, which may lead into folders within `folder`.
+    dict of str to str, bytes, iterable of bytes or None
+        Empty; takes the files by their names, which may lead into folders within `folder`. What is None shall not
+        be there: an earlier file of that name goes with the others' coming.
 
     Raises
     ------
@@ -53,13 +54,16 @@ def replacing(folder: Path) -> Iterator[dict[str, Content]]:
         with _naming(folder):
             folder.mkdir(parents=True, exist_ok=True)
             temporary.mkdir()
-        files: dict[str, Content] = {}
+        files: dict[str, Content | None] = {}
         yield files
-        moves = [(temporary / str(number), folder / name) for number, name in enumerate(files)]
-        for (file, target), content in zip(moves, files.values(), strict=True):
+        moves = []
+        for number, (name, content) in enumerate(files.items()):
+            file, target = temporary / str(number), folder / name
             _require_room(folder, target)
-            with _naming(target):
-                _write(file, content)
+            if content is not None:
+                moves.append((file, target))
+                with _naming(target):
+                    _write(file, content)
         with undisturbed():
             for _, target in moves:
                 made[:0] = [parent for parent in target.parents if not parent.exists()]
@@ -68,6 +72,9 @@ def replacing(folder: Path) -> Iterator[dict[str, Content]]:
             for file, target in moves:
                 with _naming(target):
                     os.replace(file, target)
+            for target in (folder / name for name, content in files.items() if content is None):
+                with _naming(target):
+                    target.unlink(missing_ok=True)
             placed[:] = [*placed[-9:], str(moves[0][1] if len(moves) == 1 else folder)]
 
 

@@ -133,6 +133,7 @@ def run(
     *,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     method: str = "moving-frf",
+    report: Annotated[bool, Parameter(negative="--no-report")] = True,
 ) -> None:
     """Solve a scenario; write result.nc, summary.json and report.html.
 
@@ -149,12 +150,14 @@ def run(
         How: moving-frf, in the frequency domain, where the road is endless; step by step in time, on a finite road
         as it is and on a stretch that is cut out of an endless one, a vehicle by cdfm (with the road as one system)
         or sim (side by side, contact forces exchanged), prescribed loads by newmark.
+    report
+        Whether to draw report.html, which takes half the time of a short run. Without it an earlier report goes,
+        since it shows another result.
     """
     console = plain_console()
     stages = Stages()
     with stages:
         stages.report("loading", 0.0)
-        import matplotlib.figure  # noqa: F401
         import xarray  # noqa: F401
 
         from movingfrf._basics.netcdf_file import as_netcdf
@@ -177,15 +180,18 @@ def run(
             stages.report("result.nc", 0.0)
             files["result.nc"] = as_netcdf(result)
             files["summary.json"] = summary_as_json(result, found)
-            stages.report("report.html", 0.0)
-            page = render(result, guideway=scenario.endless, scenario_text=scenario.text, title=scenario.name)
-            files["report.html"] = page
+            files["report.html"] = None
+            if report:
+                stages.report("report.html", 0.0)
+                files["report.html"] = render(
+                    result, guideway=scenario.endless, scenario_text=scenario.text, title=scenario.name
+                )
     if isinstance(scenario.case, Drive):
         console.print(f"Road: {scenario.case.road.description}", soft_wrap=True)
     console.print(f"Method: {way(result).name}\n", soft_wrap=True)
     print_result(console, result, found)
     print_table(console, stages.table())
-    for name in ("report.html", "result.nc", "summary.json"):
+    for name in sorted(name for name, content in files.items() if content is not None):
         console.print(f"wrote {folder / name}", soft_wrap=True)
 
 
