@@ -130,6 +130,8 @@ def main() -> int:
     """Measure, print, and tell whether all is as it should be."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
+        # As an installation has them, modules are compiled already, even where the environment would rather not.
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
         subprocess.run([sys.executable, "-m", "movingfrf", "new", "case.toml"], cwd=folder, check=True)
         dear = False
         for heading, measured in (
