@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.faults.fault import Fault
 
 FAULTS = [
+    Fault("threads of BLAS let loose", "response/batches.py", "limit(limits=1)", "limit(limits=2)"),
     # Spectra and time.
     Fault("window sign", "response/line.py", "np.exp(-decay * step", "np.exp(decay * step"),
     Fault("window not undone", "response/line.py", "np.exp(self.decay", "np.exp(0.0 * self.decay"),

@@ -227,8 +227,8 @@ FAULTS = [
     Fault(
         "road that levels off at its end",
         "roughness/excitation.py",
-        "onward(after, slope, curvature, length), bc_type=((1, slope),",
-        "0.0 * after, bc_type=((1, 0.0),",
+        "onward(after, slope, curvature, length), first=slope,",
+        "0.0 * after, first=0.0,",
     ),
     Fault("slope of the end fades not", "_basics/smooth.py", "* (1.0 - smooth_step(beyond / length))", "* 1.0"),
     Fault(

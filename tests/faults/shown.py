@@ -5,6 +5,26 @@ from __future__ import annotations
 from tests.faults.fault import Fault
 
 FAULTS = [
+    # Figures of pages, and what they cost.
+    Fault("no room for tick labels", "reports/layout.py", "ROOM.tick + _labels(ax)", "ROOM.tick"),
+    Fault("no room for legends", "reports/layout.py", "ROOM.legend * legend_rows(names)", "0.0"),
+    Fault("powers as mathematics", "reports/layout.py", "isinstance(formatter, LogFormatterSciNotation)", "False"),
+    Fault(
+        "figure measured by drawing it",
+        "reports/figures.py",
+        "(SIZE.width, height))",
+        '(SIZE.width, height), layout="tight")',
+    ),
+    Fault(
+        "spline of another end",
+        "_basics/spline.py",
+        "above[0] = width[1], width[0] + width[1]",
+        "above[0] = width[0], width[0] + width[1]",
+    ),
+    Fault(
+        "spline of unordered places", "_basics/spline.py", "(flat[1:] >= flat[:-1]).all()", "flat[-1] >= flat[0]"
+    ),
+    Fault("area that begins anew at every knot", "_basics/spline.py", "raised[-1, ..., 1:] = ", "_ = "),
     # Paths, distributions, shapes.
     Fault(
         "shape that starts at zero",
