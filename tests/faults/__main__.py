@@ -67,6 +67,8 @@ REPORTS = [
     "tests/test_cli.py",
     "tests/test_kinds_command.py",
 ]
+# These first where it is one of how files are written, and how the command ends.
+WRITTEN = ["tests/test_disks.py", "tests/test_interrupts.py"]
 # These where it lies in what a user writes.
 SCENARIOS = [
     "tests/test_scenario.py",
@@ -107,6 +109,8 @@ def selection(fault: Fault | None) -> list[str]:
     file = fault.file if fault else ""
     if file == "_basics/checks.py":
         return ["tests/test_door.py", *SELECTION]
+    if fault in faults_of("written"):
+        return WRITTEN + SELECTION
     if file.startswith(SAMPLED):
         return [*SAMPLING, *SELECTION, *REFERENCE]
     independent = file.startswith(("stepping/", "guideways/sampled", "guideways/record", "guideways/files"))

@@ -51,7 +51,7 @@ def replacing(folder: Path) -> Iterator[dict[str, Content | None]]:
                 each.rmdir()
 
     with undone(undo):
-        with _naming(folder):
+        with naming(folder):
             folder.mkdir(parents=True, exist_ok=True)
             temporary.mkdir()
         files: dict[str, Content | None] = {}
@@ -62,18 +62,18 @@ def replacing(folder: Path) -> Iterator[dict[str, Content | None]]:
             _require_room(folder, target)
             if content is not None:
                 moves.append((file, target))
-                with _naming(target):
+                with naming(target):
                     _write(file, content)
         with undisturbed():
             for _, target in moves:
                 made[:0] = [parent for parent in target.parents if not parent.exists()]
-                with _naming(target):
+                with naming(target):
                     target.parent.mkdir(parents=True, exist_ok=True)
             for file, target in moves:
-                with _naming(target):
+                with naming(target):
                     os.replace(file, target)
             for target in (folder / name for name, content in files.items() if content is None):
-                with _naming(target):
+                with naming(target):
                     target.unlink(missing_ok=True)
             placed[:] = [*placed[-9:], str(moves[0][1] if len(moves) == 1 else folder)]
 
@@ -94,7 +94,7 @@ def write_whole(path: Path, content: Content) -> None:
         If it cannot be written, with its name; then what was there is there still.
     """
     if path.exists() and not path.is_file() and not path.is_dir():
-        with _naming(path):
+        with naming(path):
             _write(path, content)
         return
     place = behind_links(path)
@@ -108,8 +108,19 @@ def behind_links(path: Path) -> Path:
 
 
 @contextmanager
-def _naming(place: Path) -> Iterator[None]:
-    """Name what should have been written, not the temporary place where it failed."""
+def naming(place: Path) -> Iterator[None]:
+    """Name what should have been written, not the temporary place where it failed.
+
+    Parameters
+    ----------
+    place : Path
+        The name.
+
+    Raises
+    ------
+    OSError
+        What went wrong within the block, with that name.
+    """
     try:
         yield
     except OSError as error:

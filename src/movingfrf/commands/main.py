@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import gc
-import io
 import os
 import sys
 from contextlib import suppress
@@ -14,6 +13,10 @@ from cyclopts import CycloptsError
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.ending import heed, ignore, placed, written
 from movingfrf.commands.root import Status, app
+from movingfrf.commands.streams import StandardStream
+
+# What standard output is called in a message.
+OUTPUT = "standard output"
 
 # Module → its commands, in the order in which messages list them. A module is loaded when one of its commands is
 # called for, or help is.
@@ -65,7 +68,7 @@ def main(arguments: list[str] | None = None) -> int:
         said = _failed(error)
     except SystemExit:
         # So does rich end a process where nobody reads what it prints.
-        said = _failed(BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE)))
+        said = _failed(OSError(errno.EPIPE, os.strerror(errno.EPIPE), OUTPUT))
     if not said:
         return Status.DONE
     with suppress(OSError):
@@ -75,13 +78,9 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _failed(error: OSError) -> str:
     """Say what cannot be read or written, and why."""
-    why = error.strerror or str(error)
-    if error.filename:
-        return f"cannot read or write: {error.filename}: {why}"
-    # Every file is named; what fails without a name as only writing does is what is printed.
-    if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EPIPE, errno.EIO):
-        return f"cannot write to standard output: {why}" + (f"; {written()}" if placed else "")
-    return f"cannot read or write: {why}"
+    place = f"{error.filename}: " if error.filename else ""
+    there = f"; {written()}" if error.filename == OUTPUT and placed else ""
+    return f"cannot read or write: {place}{error.strerror or error}{there}"
 
 
 def entry() -> None:
@@ -90,12 +89,9 @@ def entry() -> None:
     # Loading makes hundreds of thousands of objects, which all stay: looking through them for what can go, as often
     # as Python does, takes an eighth of a short run.
     gc.set_threshold(100_000)
-    # Not every console has every letter; one that was closed takes nothing.
-    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")
-    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
+    # One that was closed takes nothing.
+    sys.stdout = StandardStream(sys.stdout or open(os.devnull, "w"), OUTPUT)
+    sys.stderr = StandardStream(sys.stderr or open(os.devnull, "w"), "standard error")
     status = main()
     ignore()
     for stream in (sys.stdout, sys.stderr):
