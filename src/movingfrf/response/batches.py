@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from movingfrf._basics.arrays import ComplexArray
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,13 +41,21 @@ def unthreaded() -> AbstractContextManager[object]:
     Many small matrices and thin products gain nothing by two, take twice the processor's time, and lose tenfold if
     one thread has to wait.
     """
-    limit: AbstractContextManager[object] = _threads().limit(limits=1)
+    pools = _threads()
+    limit: AbstractContextManager[object] = pools.limit(limits=1) if pools else nullcontext()
     return limit
 
 
 @cache
-def _threads() -> ThreadpoolController:
-    """Find NumPy's thread pools, once: that takes as long as a quarter car's response."""
+def _threads() -> ThreadpoolController | None:
+    """Find NumPy's thread pools, once: that takes as long as a quarter car's response.
+
+    None without threadpoolctl, as in a browser, which has no threads.
+    """
+    try:
+        from threadpoolctl import ThreadpoolController
+    except ImportError:
+        return None
     return ThreadpoolController()
 
 

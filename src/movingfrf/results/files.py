@@ -170,7 +170,7 @@ def summary_as_json(result: xr.Dataset, found: list[Measure]) -> str:
         JSON text; a number without a finite value is null.
     """
     settings: Mapping[str, Any] = {
-        key: value for key, value in result.attrs.items() if key not in ("findings", "scenario")
+        key: value for key, value in result.attrs.items() if key not in ("findings", "scenario", "Conventions")
     }
     content = {
         "settings": settings,
