@@ -322,7 +322,7 @@ def test_profile_tells_and_writes(road, tmp_path, capsys):
         "Findings",
     ):
         assert words in told
-    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["profile.html", "profile.json"]
+    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["iri.csv", "profile.html", "profile.json"]
     content = json.loads((tmp_path / "out" / "profile.json").read_text())
     assert content["length_m"] == 99.75
     assert len(content["paths"]) == 2

@@ -106,9 +106,7 @@ def test_rainflow_of_a_history_upside_down_or_backwards():
     history = np.random.default_rng(8).normal(size=1000)
     cycles = np.array(sorted(map(tuple, mf.rainflow(history))))
     np.testing.assert_array_equal(sorted(map(tuple, mf.rainflow(history[::-1]))), cycles)
-    np.testing.assert_allclose(
-        sorted(map(tuple, mf.rainflow(-history) * (1, -1))), cycles, rtol=1e-12
-    )
+    np.testing.assert_allclose(sorted(map(tuple, mf.rainflow(-history) * (1, -1))), cycles, rtol=1e-12)
 
 
 def test_rainflow_sees_turning_points_alone():

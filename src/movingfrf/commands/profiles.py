@@ -117,7 +117,8 @@ def profile(
 ) -> None:
     """Describe a measured profile: length, step, spectrum and ISO 8608 class, IRI, coherence, and what looks odd.
 
-    With --output it writes profile.html (tables and figures) and profile.json (all numbers) as well.
+    With --output it writes profile.html (tables and figures), profile.json (all numbers) and iri.csv (the roughness
+    index of every segment of 20 m and of 100 m) as well.
 
     Parameters
     ----------
@@ -132,7 +133,7 @@ def profile(
     stages = Stages()
     with stages:
         stages.report("reading", 0.0)
-        from movingfrf.metrics.profile import as_dict, describe_profile
+        from movingfrf.metrics.profile import as_dict, describe_profile, indices_as_csv
         from movingfrf.reports.profile import render, tables
         from movingfrf.results.files import replacing
 
@@ -144,6 +145,7 @@ def profile(
             texts = {
                 "profile.html": render(found, understood=understood, title=file.name),
                 "profile.json": json.dumps(as_dict(found, understood), indent=1, ensure_ascii=False) + "\n",
+                "iri.csv": indices_as_csv(found),
             }
             with replacing(output) as temporary:
                 for name, text in texts.items():

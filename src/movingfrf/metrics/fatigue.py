@@ -80,8 +80,9 @@ def rainflow(values: ArrayLike) -> FloatArray:
 
     References
     ----------
-    ASTM E1049-85, Standard practices for cycle counting in fatigue analysis, 5.4.5 (repeating histories). C. Amzallag et al., Standardization of
-    the rainflow counting method for fatigue analysis, International Journal of Fatigue 16 (1994) 287-293.
+    ASTM E1049-85, Standard practices for cycle counting in fatigue analysis, 5.4.5 (repeating histories).
+    C. Amzallag et al., Standardization of the rainflow counting method for fatigue analysis, International Journal
+    of Fatigue 16 (1994) 287-293.
 
     Examples
     --------
@@ -126,7 +127,7 @@ def rainflow_damage(values: ArrayLike, *, slope: float, strength: float = 1.0) -
     Raises
     ------
     ValueError
-        If exponent or strength is not positive, the exponent beyond 50, or the history is empty or not one of finite
+        If exponent or strength is not positive, the exponent beyond 50, the history empty or not one of finite
         numbers.
 
     Examples
@@ -309,9 +310,9 @@ def _single_moment(moment: Moment, slope: float) -> float:
     return float(moment(2 / slope) ** (slope / 2) / np.sqrt(moment(2)))
 
 
-# Spectral methods by name → damage over that of a narrow band with the same crossings, from the moments of a density
-# of unit variance and the exponent. Zhao and Baker's is not among them: below an irregularity of 0.13 one of its weights
-# turns negative, and with it the damage; just above, next to none is left.
+# Spectral methods by name → damage over that of a narrow band with the same crossings, from moments of a density
+# of unit variance and the exponent. Zhao and Baker's is not among them: below an irregularity of 0.13 one of its
+# weights turns negative, and with it the damage; just above, next to none is left.
 METHODS: Mapping[str, Callable[[Moment, float], float]] = {
     "narrow_band": _narrow_band,
     "dirlik": _dirlik,

@@ -156,9 +156,6 @@ SCHEMAS: dict[str, dict[str, Label]] = {
     "accelerance": _per_force("accelerance", "m/s2/N"),
 }
 
-# What their names, units and dimensions keep to.
-CF = "CF-1.11"
-
 # Kinds that are histories.
 HISTORIES = ("coupled", "loaded")
 
@@ -267,18 +264,20 @@ def labelled(values: Mapping[str, ArrayLike], attributes: Mapping[str, str | flo
             variable.encoding["_FillValue"] = None  # of a coordinate nothing is missing
         (coordinates if label.coordinate else data)[name] = variable
     found = xr.Dataset(data, coordinates, dict(attributes))
-    return found.assign_attrs(Conventions=CF) if _keeps_cf(found) else found
+    return found.assign_attrs(Conventions="CF-1.11") if _keeps_cf(found) else found
 
 
 def _keeps_cf(result: xr.Dataset) -> bool:
     """Whether what the CF conventions ask of numbers is so: they are real, and those along a dimension in order."""
-    steps = [np.diff(each) for each in (index.values for index in result.indexes.values()) if each.dtype.kind in "if"]
+    steps = [
+        np.diff(each) for each in (index.values for index in result.indexes.values()) if each.dtype.kind in "if"
+    ]
     real = all(variable.dtype.kind != "c" for variable in result.variables.values())
     return real and all((step > 0).all() or (step < 0).all() for step in steps)
 
 
-def unit_of(units: str, dof_unit: str) -> str:
-    """Unit of a degree of freedom in m or rad, of what has a unit for each: `N` is itself, `m or rad` one of two.
+def unit_of(units: str, dof_unit: str = "") -> str:
+    """Take the unit for a degree of freedom in m or rad; what has one unit for all, has it here too.
 
     Examples
     --------
