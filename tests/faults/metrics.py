@@ -96,6 +96,8 @@ FAULTS = [
         "<= abs(waiting[-2] - waiting[-3])",
     ),
     Fault("Dirlik's exponential without its root of two", "metrics/fatigue.py", "(decay / np.sqrt(2))", "(decay)"),
+    Fault("since ignored", "metrics/loads.py", "after(resolved(result), since)", "resolved(result)"),
+    Fault("wear of the run-in", "metrics/loads.py", "power=power, since=since)", "power=power)"),
     Fault("falling through a level", "metrics/fatigue.py", "np.diff(history) > 0", "np.diff(history) < 0"),
     Fault(
         "accelerance with the wrong sign",
@@ -146,8 +148,8 @@ FAULTS = [
     Fault(
         "vehicle that never runs in",
         "metrics/entry.py",
-        "samples_before(self.since, self.step, self.whole",
-        "samples_before(0.0, self.step, self.whole",
+        "after(self.whole, self.since)",
+        "after(self.whole, 0.0)",
     ),
     Fault(
         "weighting that starts anew",

@@ -43,7 +43,7 @@ def export(result: xr.Dataset, file: str | Path, *, force: bool = False) -> None
     Examples
     --------
     >>> import movingfrf as mf
-    >>> loads = mf.moving_loads(mf.RigidGuideway(), np.ones((9, 1)), [0.0], speed=10.0)
+    >>> loads = mf.moving_loads(mf.RigidGuideway(), [[1.0]] * 9, [0.0], speed=10.0)
     >>> exported(loads, ".csv").decode().splitlines()[:2]
     ['time [s],force at 0 m [N],deflection at 0 m [m]', '0.0,1.0,0.0']
     """
