@@ -2,6 +2,12 @@
 
 import subprocess
 import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from movingfrf._basics import arrays
 
 # Installed with the package, but needed for files, pages, the command line, plates and speed alone.
 BLOCKED = (
@@ -24,9 +30,12 @@ import sys
 import threading
 
 
+BLOCKED = {(*BLOCKED, *EXTRAS)!r}
+
+
 class Blocked:
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in {(*BLOCKED, *EXTRAS)!r}:
+        if name.partition(".")[0] in BLOCKED:
             raise ImportError(f"{{name}} is blocked")
 
 
@@ -76,7 +85,7 @@ def run(code):
 
 def test_numpy_scipy_and_xarray_are_enough_to_compute():
     """As in Pyodide, which has no threads either; the meta-path finder is asked before any installed package."""
-    done = run(f"BLOCKED = {BLOCKED!r}\n{COMPUTED}")
+    done = run(COMPUTED)
     assert done.returncode == 0, done.stderr
     assert done.stdout == "\n"
 
@@ -85,3 +94,16 @@ def test_what_is_blocked_is_blocked():
     done = run("import h5py")
     assert done.returncode == 1
     assert done.stderr.endswith("ImportError: h5py is blocked\n")
+
+
+def test_memory_that_nothing_tells_is_not_refused(monkeypatch):
+    """Without /proc and psutil, as in a browser; where one of them tells, it counts."""
+    assert 0 < arrays.free_memory() < 2**50
+    with pytest.raises(ValueError, match=r"a train of 9 needs about 9\.31e"):
+        arrays.require_memory(1e20, "a train of 9")
+    monkeypatch.setattr(arrays, "Path", lambda name: Path("/nowhere") / name[1:])
+    monkeypatch.setitem(sys.modules, "psutil", SimpleNamespace(virtual_memory=lambda: SimpleNamespace(available=7)))
+    assert arrays.free_memory() == 7.0
+    monkeypatch.setitem(sys.modules, "psutil", None)
+    assert arrays.free_memory() == float("inf")
+    arrays.require_memory(1e20, "a train of 9")
