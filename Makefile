@@ -12,7 +12,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 TESTS = PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadgroup
 
-.PHONY: demo paper test test-slow test-lowest coverage bench cost against scale random fuzz honest accuracy faults calls lint format dist picture clean
+.PHONY: demo paper test test-slow lowest newest coverage bench cost against scale random fuzz honest accuracy faults calls lint format dist picture clean
 
 demo: $(READY)
 	@mkdir -p out
@@ -29,9 +29,9 @@ test: $(READY) lint
 test-slow: $(READY)
 	$(TESTS) -m slow
 
-# All tests with the lowest versions that the package says it works with, in an environment of their own.
-test-lowest:
-	PYTHON=$(PYTHON) JOBS=$(JOBS) tools/lowest.sh
+# All tests with the lowest versions that the package says it works with, or the newest, in an environment of their own.
+lowest newest:
+	PYTHON=$(PYTHON) JOBS=$(JOBS) tools/versions.sh $@
 
 coverage: $(READY)
 	$(TESTS) --cov --cov-report=term:skip-covered
@@ -106,4 +106,4 @@ $(READY): pyproject.toml
 	@touch $(READY)
 
 clean:
-	rm -rf $(VENV) .venv-lowest build dist out
+	rm -rf $(VENV) .venv-lowest .venv-newest build dist out

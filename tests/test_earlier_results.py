@@ -73,7 +73,7 @@ def test_a_scenario_says_what_it_said(name):
             assert (now[variable].values == earlier[variable].values).all(), variable
     numbers = {key for key, value in earlier.attrs.items() if isinstance(value, float)}
     # Which said neither.
-    assert set(now.attrs) - {"kind", "method", "solved_step", "grade"} == set(earlier.attrs)
+    assert set(now.attrs) - {"kind", "method", "solved_step", "grade", "Conventions"} == set(earlier.attrs)
     assert all(now.attrs[key] == pytest.approx(earlier.attrs[key], rel=1e-6) for key in numbers - SAMPLED)
     codes = [[one["code"] for one in json.loads(result.attrs["findings"])] for result in (now, earlier)]
     assert codes[0] == codes[1]

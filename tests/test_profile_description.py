@@ -1,5 +1,6 @@
 """What `movingfrf profile` and `convert` say and write."""
 
+import csv
 import itertools
 import json
 import re
@@ -322,9 +323,16 @@ def test_profile_tells_and_writes(road, tmp_path, capsys):
         "Findings",
     ):
         assert words in told
-    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["profile.html", "profile.json"]
+    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["iri.csv", "profile.html", "profile.json"]
     content = json.loads((tmp_path / "out" / "profile.json").read_text())
     assert content["length_m"] == 99.75
+    heads, *lines = csv.reader((tmp_path / "out" / "iri.csv").read_text().splitlines())
+    assert heads == ["segment [m]", "start [m]", "end [m]", "IRI of path 0 [m/km]", "IRI of path 1 [m/km]"]
+    assert [line[:3] for line in lines] == [["20", str(at), str(at + 20)] for at in (0, 20, 40, 60)]
+    both = [path["iri_per_20_m_mm_per_m"] for path in content["paths"]]
+    assert [[float(value) for value in line[3:]] for line in lines] == [
+        list(pair) for pair in zip(*both, strict=True)
+    ]
     assert len(content["paths"]) == 2
     assert len(content["paths"][0]["iri_per_20_m_mm_per_m"]) == 4
     assert content["steps"][0].startswith("took out a polynomial")

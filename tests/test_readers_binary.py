@@ -175,8 +175,10 @@ def npy(header, content=b""):
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w") as archive:
         for name in ("distance", "elevation"):
+            # Without the time of day, which would end in the names of tests, another for each process.
             archive.writestr(
-                f"{name}.npy", b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + content
+                zipfile.ZipInfo(f"{name}.npy"),
+                b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + content,
             )
     return made.getvalue()
 

@@ -117,6 +117,7 @@ _WHERE = {
     "cdfm": "stepping.coupled",
     "sim": "stepping.coupled",
     "compare": "studies.comparison.comparison",
+    "export": "results.export",
     "measures": "metrics.measures",
     "assess": "metrics.measures",
     "iri": "metrics.iri",

@@ -48,6 +48,53 @@ def travelled(
     return labelled(values, {"kind": "coupled", **attributes})
 
 
+def wild_at_first(wild=3.0, **changes):
+    """Make a result of the same kind that is three times as wild in its first two seconds; tension included."""
+    result = travelled(amplitude=2.5e3, loads=(5e3, 7e3), **changes)
+    factor = np.where(result.time.values < 2.0, wild, 1.0)[:, None]
+    for name in ("contact_force", "deflection", "acceleration"):
+        result[name] = result[name].copy(data=result[name].values * factor)
+    return result
+
+
+# Every measure of a history, as a number.
+SINCE = {
+    "dynamic_load_coefficient": lambda r, **o: mf.dynamic_load_coefficient(r, **o)[0],
+    "impact_factor": lambda r, **o: mf.impact_factor(r, **o)[0],
+    "aggregate_force": lambda r, **o: mf.aggregate_force(r, **o).aggregate_force.values.max(),
+    "road_wear": lambda r, **o: mf.road_wear(r, **o)[0],
+    "spatial_repeatability": lambda r, **o: mf.spatial_repeatability(r, wild_at_first(-3.0, phase=0.7), **o)[0],
+    "contact_loss": lambda r, **o: mf.contact_loss(r, **o).share[0],
+    "measures": lambda r, **o: mf.measures(r, **o)[1].value,
+    "vibration_dose": lambda r, **o: mf.vibration_dose(r.acceleration.values, STEP, **o)[0],
+}
+
+
+@pytest.mark.parametrize("name", SINCE)
+def test_the_first_seconds_are_left_out(name):
+    """As of the record that begins then; and they would have counted."""
+    result = wild_at_first()
+    later = result.isel(time=slice(2000, None))
+    if name == "spatial_repeatability":
+        # Both records are cut: cosines of one wavelength, 0.7 rad apart.
+        assert SINCE[name](result, since=2.0) == pytest.approx(np.cos(0.7), abs=0.01)
+    else:
+        assert SINCE[name](result, since=2.0) == pytest.approx(SINCE[name](later), rel=1e-12)
+    assert abs(SINCE[name](result) - SINCE[name](result, since=2.0)) > 0.02 * abs(SINCE[name](result))
+    with pytest.raises(mf.ParameterError, match=r"since must lie within the record, 9\.999 s at most, got 10\.0 s"):
+        SINCE[name](result, since=10.0)
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_since_in_closed_form():
+    assert mf.dynamic_load_coefficient(wild_at_first(), since=2.0)[0] == pytest.approx(0.5 / np.sqrt(2), rel=1e-9)
+    loads = mf.moving_loads(PAVEMENT, np.where(np.arange(3000) < 1000, 3e4, 1e4)[:, None], [0.0], speed=SPEED)
+    (late,) = [m.value for m in mf.measures(loads, since=2.0) if m.name == "rms"]
+    still = mf.moving_loads(PAVEMENT, np.full((3000, 1), 1e4), [0.0], speed=SPEED)
+    (steady,) = [m.value for m in mf.measures(still, since=2.0) if m.name == "rms"]
+    assert late == pytest.approx(steady, rel=1e-6)
+
+
 def test_dynamic_load_coefficient():
     """A/√2 over the static load; whole waves."""
     result = travelled(amplitude=1e3)

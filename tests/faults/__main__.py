@@ -60,6 +60,7 @@ ABOUT_PROFILES = (
 
 # These first where the fault lies in what is shown: figures, tables, files.
 REPORTS = [
+    "tests/test_export.py",
     "tests/test_plots.py",
     "tests/test_measure_command.py",
     "tests/test_random_command.py",
@@ -78,7 +79,7 @@ SCENARIOS = [
     "tests/test_vehicle_scenarios.py",
     "tests/test_finite_scenarios.py",
 ]
-SHOWN = ("reports/", "commands/", "results/files", "_basics/wording")
+SHOWN = ("reports/", "commands/", "results/files", "results/export", "_basics/wording")
 
 # These first where the fault lies in what is sampled where.
 SAMPLED = ("response/sampling", "response/influence", "response/accuracy", "response/line", "roughness/excitation")

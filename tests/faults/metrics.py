@@ -72,21 +72,30 @@ FAULTS = [
     Fault(
         "ranges for amplitudes",
         "metrics/fatigue.py",
-        "np.abs(ends[:, 1] - ends[:, 0]) / 2",
-        "np.abs(ends[:, 1] - ends[:, 0])",
+        "np.abs(second - first) / 2",
+        "np.abs(second - first)",
     ),
     Fault(
         "open cycles lost",
         "metrics/fatigue.py",
-        "for pairs in (closed, fatpack.find_rainflow_cycles(again)[0])",
-        "for pairs in (closed,)",
+        "history[: top + 1]]",
+        "history[:top]]",
     ),
     Fault(
         "variance for deviation",
         "metrics/fatigue.py",
-        "np.exp(0.5 * slope * np.log(variance)",
-        "np.exp(slope * np.log(variance)",
+        "np.log(2 * variance)",
+        "np.log(2 * variance**2)",
     ),
+    Fault(
+        "cycles closed by smaller ones",
+        "metrics/fatigue.py",
+        ">= abs(waiting[-2] - waiting[-3])",
+        "<= abs(waiting[-2] - waiting[-3])",
+    ),
+    Fault("Dirlik's exponential without its root of two", "metrics/fatigue.py", "(decay / np.sqrt(2))", "(decay)"),
+    Fault("since ignored", "metrics/loads.py", "after(resolved(result), since)", "resolved(result)"),
+    Fault("wear of the run-in", "metrics/loads.py", "power=power, since=since)", "power=power)"),
     Fault("falling through a level", "metrics/fatigue.py", "np.diff(history) > 0", "np.diff(history) < 0"),
     Fault(
         "accelerance with the wrong sign",
@@ -137,8 +146,8 @@ FAULTS = [
     Fault(
         "vehicle that never runs in",
         "metrics/entry.py",
-        "samples_before(self.since, self.step, self.whole",
-        "samples_before(0.0, self.step, self.whole",
+        "after(self.whole, self.since)",
+        "after(self.whole, 0.0)",
     ),
     Fault(
         "weighting that starts anew",

@@ -78,5 +78,24 @@ FAULTS = [
     Fault("table wider than the console", "commands/console.py", "if pieces[-1] and width > left:", "if False:"),
     Fault("once in 1e46 seconds", "_basics/wording.py", "0 < value < NEVER", "0 < value < 0"),
     Fault("computed each time", "_basics/remembered.py", "if name not in implied:", "if True:"),
+    # Results for other programs.
+    Fault("radians for metres", "results/labels.py", 'if dof_unit == "rad" else 0', 'if dof_unit == "m" else 0'),
+    Fault("real part twice", "results/exports/columns.py", "= column.values.imag", "= column.values.real"),
+    Fault("road upside down", "results/exports/universal.py", "form.up if upwards", "form.down if upwards"),
+    Fault(
+        "two places at one node",
+        "results/exports/universal.py",
+        "[response.dim] + response.number",
+        "[response.dim]",
+    ),
+    Fault(
+        "time of day in MATLAB's head",
+        "results/exports/matlab.py",
+        "return said + file.getvalue()[len(said) :]",
+        "return file.getvalue()",
+    ),
+    Fault("names alike in MATLAB", "results/exports/matlab.py", "while valid in found.values():", "while False:"),
+    Fault("file replaced unasked", "results/export.py", "if file.exists() and not force:", "if False:"),
+    Fault("complex numbers in CF", "results/labels.py", "return real and all(", "return all("),
     Fault("file without accelerations", "results/files.py", "if not label.optional]", "if label.optional]"),
 ]

@@ -114,6 +114,6 @@ def test_weight_and_momentum_of_a_journey(parameters, speed, start):
     result = mf.simulate(road, car, hump, speed=speed, duration=0.5, start=start, time_step=5e-3, truncation=60.0)
     mass, *_ = held_matrices(car)
     total = result.acceleration.values @ mass @ np.asarray(car.vertical) + result.contact_force.values.sum(axis=1)
-    assert np.abs(total).max() < 1e-8 * max(np.abs(result.contact_force.values).max(), 1e-6)
+    assert np.abs(total).max() < 1e-8 * max(np.abs(result.contact_force.values).max(), 1e-4)
     weight = GRAVITY * np.trace(mass * np.diag(car.vertical))
     assert abs(float(result.static_load.sum()) - weight) < 1e-9 * weight

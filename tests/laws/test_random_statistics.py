@@ -98,7 +98,6 @@ def test_weighted_acceleration():
 @pytest.mark.parametrize("slope", [3.0, 5.0])
 def test_fatigue_of_a_narrow_band(slope):
     """ν₀ (√2 σ)^m Γ(1 + m/2)/C, from the same crossing rate and root mean square."""
-    pytest.importorskip("FLife", reason="the extra `fatigue` is not installed")
     result = respond(coherence=None)
     damage = mf.spectral_fatigue(result, "contact_force", slope=slope, strength=1e20, method="narrow_band")
     rms, rate = result.contact_force_rms.values, result.contact_force_crossing_rate.values
@@ -117,7 +116,6 @@ def test_fatigue_of_a_narrow_band(slope):
 @pytest.mark.parametrize("slope", [2.0, 4.0, 10.0])
 def test_fatigue_on_the_reference_case_is_positive(method, slope):
     """And no more than a narrow band's; irregularities go down to 0.08, where a formula may leave its range."""
-    pytest.importorskip("FLife", reason="the extra `fatigue` is not installed")
     result = reference_case()
     for quantity in RANDOM_QUANTITIES:
         found = mf.spectral_fatigue(result, quantity, slope=slope, method=method)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-import psutil
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.floating[Any]]
@@ -43,8 +43,25 @@ def require_memory(needed: float, what: str) -> None:
     """
     # The share of the free memory that one computation may plan to take [a convention].
     share = 0.8
-    available = psutil.virtual_memory().available
+    available = free_memory()
     if needed > share * available:
         raise ValueError(
             f"{what} needs about {needed / 2**30:.3g} GiB of memory, but only {available / 2**30:.3g} GiB are free"
         )
+
+
+def free_memory() -> float:
+    """Bytes of memory that can be had without swapping; inf where nothing tells, as in a browser.
+
+    Linux tells it itself; elsewhere psutil does.
+    """
+    try:
+        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+        return 1024.0 * next(int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
+    except (OSError, StopIteration):
+        pass
+    try:
+        import psutil
+    except ImportError:
+        return math.inf
+    return float(psutil.virtual_memory().available)

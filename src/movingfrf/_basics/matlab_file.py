@@ -51,6 +51,9 @@ class Level5:
     cell: int
     text: int
     complex_flag: int  # beside the class
+    # What names may not be in MATLAB, and how many letters they have at most.
+    reserved: frozenset[str]
+    longest_name: int
 
 
 LEVEL_5 = Level5(
@@ -62,6 +65,11 @@ LEVEL_5 = Level5(
     cell=1,
     text=4,
     complex_flag=0x0800,
+    reserved=frozenset(
+        "break case catch classdef continue else elseif end for function global if otherwise parfor persistent "
+        "return spmd switch try while".split()
+    ),
+    longest_name=63,
 )
 
 

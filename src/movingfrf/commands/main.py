@@ -25,6 +25,7 @@ COMMANDS = (
     ("schema", "schema"),
     ("kinds", "kinds"),
     ("scenarios", "vehicles", "run", "random", "measure"),
+    ("export", "export"),
     ("studies", "compare", "paper"),
     ("profiles", "profile", "convert"),
 )

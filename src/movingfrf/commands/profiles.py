@@ -117,7 +117,8 @@ def profile(
 ) -> None:
     """Describe a measured profile: length, step, spectrum and ISO 8608 class, IRI, coherence, and what looks odd.
 
-    With --output it writes profile.html (tables and figures) and profile.json (all numbers) as well.
+    With --output it writes profile.html (tables and figures), profile.json (all numbers) and iri.csv (the roughness
+    index of every segment of 20 m and of 100 m) as well.
 
     Parameters
     ----------
@@ -133,7 +134,7 @@ def profile(
     with stages:
         stages.report("reading", 0.0)
         from movingfrf._basics.output import replacing
-        from movingfrf.metrics.profile import as_dict, describe_profile
+        from movingfrf.metrics.profile import as_dict, describe_profile, indices_as_csv
         from movingfrf.reports.profile import render, tables
 
         read, understood = read_as_asked(file, options)
@@ -144,6 +145,7 @@ def profile(
             with replacing(output) as files:
                 files["profile.html"] = render(found, understood=understood, title=file.name)
                 files["profile.json"] = json.dumps(as_dict(found, understood), indent=1, ensure_ascii=False) + "\n"
+                files["iri.csv"] = indices_as_csv(found)
             written = [output / name for name in files]
     console.print(understood, soft_wrap=True)
     for sentence in read.steps:

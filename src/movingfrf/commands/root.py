@@ -40,7 +40,8 @@ app = App(
     them, and says how long each takes and how far it is from the converged answer.
 
     5. movingfrf random truck.toml --output out/random computes the response to all roads with its spectrum, without
-    realising one; movingfrf measure out/truck/result.nc gives comfort, load on the road and fatigue of a result.
+    realising one; movingfrf measure out/truck/result.nc gives comfort, load on the road and fatigue of a result,
+    movingfrf export out/truck/result.nc truck.csv a table (.mat for MATLAB, .uff for modal analysis).
 
     6. movingfrf paper --output out/paper reproduces the paper on the moving FRF, figure by figure.
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import Checks, checking, shown
-from movingfrf.metrics.loads import check_coupled
+from movingfrf.metrics.loads import check_coupled, samples_before
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -276,7 +276,7 @@ def running_rms(values: ArrayLike, time_step: float, window: float = ISO_2631.ru
     return np.sqrt(np.maximum(energy[1:] - energy[first], 0.0) / steps).reshape(shape)
 
 
-def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
+def vibration_dose(values: ArrayLike, time_step: float, *, since: float = 0.0) -> FloatArray:
     """Vibration dose value (∫ a⁴ dt)^¼, which weighs shocks more than an rms does.
 
     Parameters
@@ -285,6 +285,8 @@ def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
         Weighted accelerations [m/s² or rad/s²].
     time_step : float
         Step in time [s].
+    since : float
+        Seconds to leave out at the start [s].
 
     Returns
     -------
@@ -294,7 +296,7 @@ def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
     Raises
     ------
     ValueError
-        If the step is not positive, or values are not finite.
+        If the step is not positive, values are not finite, or nothing is left of them.
 
     References
     ----------
@@ -303,7 +305,8 @@ def vibration_dose(values: ArrayLike, time_step: float) -> FloatArray:
     with checking() as check:
         time_step = check.positive("time_step", time_step, "s")
         histories, shape = _histories(check, "values", values, "m/s²")
-    return np.asarray((np.sum(histories**4, axis=0) * time_step) ** 0.25).reshape(shape[1:])
+    felt = histories[samples_before(since, time_step, len(histories)) :]
+    return np.asarray((np.sum(felt**4, axis=0) * time_step) ** 0.25).reshape(shape[1:])
 
 
 def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk", since: float = 0.0) -> Comfort:
@@ -434,38 +437,6 @@ def vibration(acceleration: FloatArray, time_step: float, weighting: str, *, sin
         vdv=float(vibration_dose(values, time_step)),
         duration=values.size * time_step,
     )
-
-
-def samples_before(since: float, time_step: float, count: int) -> int:
-    """Count the samples of a record that lie before an instant.
-
-    Parameters
-    ----------
-    since : float
-        The instant, from the first sample on [s].
-    time_step : float
-        Step in time [s].
-    count : int
-        Number of samples of the record.
-
-    Returns
-    -------
-    int
-        How many to leave out.
-
-    Raises
-    ------
-    ValueError
-        If the instant is negative, or beyond the record.
-    """
-    with checking() as check:
-        since = check.not_negative("since", since, "s")
-        if not check.faults and since > (count - 1) * time_step:
-            check.refuse(
-                "since", f"must lie within the record, {(count - 1) * time_step:.6g} s at most, got {since!r} s"
-            )
-    # A time is a whole number of steps but for rounding.
-    return int(np.ceil(since / time_step - 1e-6))
 
 
 def comfort_reactions(rms: float) -> tuple[str, ...]:

@@ -14,12 +14,12 @@ from movingfrf.metrics.comfort import (
     WEIGHTING_OF,
     WEIGHTINGS,
     Comfort,
-    samples_before,
     vibration,
 )
 from movingfrf.metrics.fatigue import spectral_fatigue
 from movingfrf.metrics.loads import (
     ContactLoss,
+    after,
     common_points,
     contact_loss,
     dynamic_load_coefficient,
@@ -57,7 +57,7 @@ class History:
     @cached_property
     def result(self) -> xr.Dataset:
         """The result without the first seconds."""
-        return self.whole.isel(time=slice(samples_before(self.since, self.step, self.whole.sizes["time"]), None))
+        return after(self.whole, self.since)
 
     @cached_property
     def coefficients(self) -> FloatArray:

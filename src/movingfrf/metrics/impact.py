@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 CUSTOMARY = 95.0  # percentile [%]
 
 
-def impact_factor(result: xr.Dataset, *, percentile: float = CUSTOMARY) -> FloatArray:
+def impact_factor(result: xr.Dataset, *, percentile: float = CUSTOMARY, since: float = 0.0) -> FloatArray:
     """Total force that each contact exceeds for a small share of the time only, over its load in steady travel.
 
     Of a Gaussian force the factor is 1 + z s, s the dynamic load coefficient and z = 1.645 for 95 %.
@@ -30,6 +30,8 @@ def impact_factor(result: xr.Dataset, *, percentile: float = CUSTOMARY) -> Float
         The coupled response of a vehicle, from `simulate`, `cdfm` or `sim`.
     percentile : float
         Share of the time for which the force is not exceeded [%].
+    since : float
+        Seconds to leave out at the start [s]: there wheels may not have reached the rough road yet.
 
     Returns
     -------
@@ -39,7 +41,8 @@ def impact_factor(result: xr.Dataset, *, percentile: float = CUSTOMARY) -> Float
     Raises
     ------
     ValueError
-        If the result has no contact forces, or the percentile does not lie between 0 and 100.
+        If the result has no contact forces, nothing is left of the record, or the percentile does not lie between 0
+        and 100.
 
     References
     ----------
@@ -47,7 +50,7 @@ def impact_factor(result: xr.Dataset, *, percentile: float = CUSTOMARY) -> Float
     Australian Road Research Board, 1983; as quoted in the literature on it.
     """
     with checking() as check:
-        result = check_coupled(check, result)
+        result = check_coupled(check, result, since=since)
         if not 0 <= (percentile := check.finite("percentile", percentile, "%")) <= 100:
             check.refuse("percentile", f"must lie between 0 and 100 %, got {percentile!r} %")
     load = result.static_load.values

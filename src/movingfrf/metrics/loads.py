@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import BoolArray, FloatArray, require_memory
 from movingfrf._basics.checks import Checks, checking, real_numbers
 from movingfrf._basics.spline import cubic
-from movingfrf.results.labels import flaws, resolved
+from movingfrf.results.labels import flaws, resolved, time_step_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,13 +27,15 @@ class ContactLoss(NamedTuple):
     longest: FloatArray  # longest loss [s], shape (contact,)
 
 
-def dynamic_load_coefficient(result: xr.Dataset) -> FloatArray:
+def dynamic_load_coefficient(result: xr.Dataset, *, since: float = 0.0) -> FloatArray:
     """Root mean square of each dynamic contact force over its load in steady travel.
 
     Parameters
     ----------
     result : xarray.Dataset
         The coupled response of a vehicle, from `simulate`, `cdfm` or `sim`.
+    since : float
+        Seconds to leave out at the start [s]: there wheels may not have reached the rough road yet.
 
     Returns
     -------
@@ -44,14 +46,14 @@ def dynamic_load_coefficient(result: xr.Dataset) -> FloatArray:
     Raises
     ------
     ValueError
-        If the result has no contact forces.
+        If the result has no contact forces, or nothing is left of the record.
 
     References
     ----------
     D. Cebon, Handbook of Vehicle-Road Interaction, Swets & Zeitlinger, 1999.
     """
     with checking() as check:
-        result = check_coupled(check, result)
+        result = check_coupled(check, result, since=since)
     return load_coefficient(np.sqrt(np.mean(result.contact_force.values**2, axis=0)), result.static_load.values)
 
 
@@ -108,7 +110,9 @@ def road_stress_factor(coefficient: ArrayLike) -> FloatArray:
     return 1 + 6 * s**2 + 3 * s**4
 
 
-def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = POINT_SPACING) -> xr.Dataset:
+def aggregate_force(
+    result: xr.Dataset, *, power: float = 4.0, spacing: float = POINT_SPACING, since: float = 0.0
+) -> xr.Dataset:
     """Add up what all contacts of a vehicle do to each point of the road, Σ_j P_jk^n.
 
     P_jk is the total force of contact j as it passes point k. Points lie at whole multiples of the spacing, where
@@ -122,6 +126,8 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
         Exponent n to which wear goes with force: 4 for fatigue of flexible pavements, 1 for rutting.
     spacing : float
         Distance between points [m].
+    since : float
+        Seconds to leave out at the start [s]: there wheels may not have reached the rough road yet.
 
     Returns
     -------
@@ -131,8 +137,8 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
     Raises
     ------
     ValueError
-        If the result has no contact forces, a value is not positive, no point meets every contact, or memory does
-        not hold the points.
+        If the result has no contact forces, a value is not positive, nothing is left of the record, no point meets
+        every contact, or memory does not hold the points.
 
     References
     ----------
@@ -154,7 +160,7 @@ def aggregate_force(result: xr.Dataset, *, power: float = 4.0, spacing: float = 
     import xarray as xr
 
     with checking() as check:
-        result = check_coupled(check, result)
+        result = check_coupled(check, result, since=since)
         power = check.positive("power", power, "1")
         spacing = check.positive("spacing", spacing, "m")
     speed, time = result.attrs["speed"], result.time.values
@@ -228,7 +234,9 @@ def common_points(result: xr.Dataset, spacing: float = POINT_SPACING) -> FloatAr
     return spacing * np.arange(np.ceil(first / spacing - 1e-9), np.floor(last / spacing + 1e-9) + 1)
 
 
-def road_wear(result: xr.Dataset, *, power: float = 4.0, percentile: float = 95.0) -> FloatArray:
+def road_wear(
+    result: xr.Dataset, *, power: float = 4.0, percentile: float = 95.0, since: float = 0.0
+) -> FloatArray:
     """Aggregate force that a share of the road's points bear at most, over that of the static loads.
 
     Parameters
@@ -239,6 +247,8 @@ def road_wear(result: xr.Dataset, *, power: float = 4.0, percentile: float = 95.
         Exponent to which wear goes with force.
     percentile : float
         Share of the points [%]: roads fail where they are worst, not on average.
+    since : float
+        Seconds to leave out at the start [s]: there wheels may not have reached the rough road yet.
 
     Returns
     -------
@@ -257,12 +267,14 @@ def road_wear(result: xr.Dataset, *, power: float = 4.0, percentile: float = 95.
     with checking() as check:
         if not 0 <= (percentile := check.finite("percentile", percentile, "%")) <= 100:
             check.refuse("percentile", f"must lie between 0 and 100 %, got {percentile!r} %")
-    worn = aggregate_force(result, power=power)
+    worn = aggregate_force(result, power=power, since=since)
     most, static = np.percentile(worn.aggregate_force.values, percentile, axis=0), worn.static_aggregate.values
     return np.divide(most, static, out=np.full(most.shape, np.inf), where=static != 0)
 
 
-def spatial_repeatability(first: xr.Dataset, second: xr.Dataset, *, spacing: float = POINT_SPACING) -> FloatArray:
+def spatial_repeatability(
+    first: xr.Dataset, second: xr.Dataset, *, spacing: float = POINT_SPACING, since: float = 0.0
+) -> FloatArray:
     """Correlation of the forces that two vehicles, or two runs, put on the same points of a road.
 
     The spatial repeatability index: the correlation coefficient over the road's points of the forces, each summed
@@ -274,6 +286,8 @@ def spatial_repeatability(first: xr.Dataset, second: xr.Dataset, *, spacing: flo
         Coupled responses on the same road; speeds and vehicles may differ.
     spacing : float
         Distance between points [m].
+    since : float
+        Seconds to leave out at the start [s]: there wheels may not have reached the rough road yet.
 
     Returns
     -------
@@ -292,7 +306,7 @@ def spatial_repeatability(first: xr.Dataset, second: xr.Dataset, *, spacing: flo
     """
     with checking() as check:
         spacing = check.positive("spacing", spacing, "m")
-    worn = [aggregate_force(result, power=1.0, spacing=spacing) for result in (first, second)]
+    worn = [aggregate_force(result, power=1.0, spacing=spacing, since=since) for result in (first, second)]
     paths = [each.path.values.tolist() for each in worn]
     if paths[0] != paths[1]:
         raise ValueError(f"second must follow the same paths as first, got {paths[1]} beside {paths[0]}")
@@ -309,7 +323,7 @@ def spatial_repeatability(first: xr.Dataset, second: xr.Dataset, *, spacing: flo
     return np.divide((one * other).sum(axis=0), size, out=np.full(size.shape, np.nan), where=size > 0)
 
 
-def contact_loss(result: xr.Dataset) -> ContactLoss:
+def contact_loss(result: xr.Dataset, *, since: float = 0.0) -> ContactLoss:
     """Tell for how long each contact would have to pull: its total force is not positive.
 
     The model keeps contact; where it is lost the computed force is tension, and what follows is an estimate.
@@ -318,6 +332,8 @@ def contact_loss(result: xr.Dataset) -> ContactLoss:
     ----------
     result : xarray.Dataset
         The coupled response of a vehicle.
+    since : float
+        Seconds to leave out at the start [s]: there wheels may not have reached the rough road yet.
 
     Returns
     -------
@@ -327,10 +343,10 @@ def contact_loss(result: xr.Dataset) -> ContactLoss:
     Raises
     ------
     ValueError
-        If the result has no contact forces.
+        If the result has no contact forces, or nothing is left of the record.
     """
     with checking() as check:
-        result = check_coupled(check, result)
+        result = check_coupled(check, result, since=since)
     lost = result.contact_force.values + result.static_load.values <= 0
     step = float(result.attrs["time_step"])
     longest = np.array([_longest_run(column) for column in lost.T]) * step
@@ -343,7 +359,7 @@ def _longest_run(flags: BoolArray) -> int:
     return int((edges[1::2] - edges[::2]).max(initial=0))
 
 
-def check_coupled(check: Checks, result: Any, *also: str) -> Any:
+def check_coupled(check: Checks, result: Any, *also: str, since: float = 0.0) -> Any:
     """Refuse what is not the response of a vehicle in time, or has no numbers for it.
 
     Parameters
@@ -354,6 +370,8 @@ def check_coupled(check: Checks, result: Any, *also: str) -> Any:
         What was given as a result.
     *also : str
         Variables that are needed beside contact forces, static loads and accelerations.
+    since : float
+        Seconds to leave out at the start [s].
 
     Returns
     -------
@@ -366,4 +384,41 @@ def check_coupled(check: Checks, result: Any, *also: str) -> Any:
         return result
     for flaw in flaws(result, names):
         check.refuse("result", f"must be the coupled response of a vehicle in finite numbers, but {flaw}")
-    return resolved(result)
+    return result if check.faults else after(resolved(result), since)
+
+
+def after(result: xr.Dataset, since: float) -> xr.Dataset:
+    """Leave out the first seconds of a response over time."""
+    return result.isel(time=slice(samples_before(since, time_step_of(result), result.sizes["time"]), None))
+
+
+def samples_before(since: float, time_step: float, count: int) -> int:
+    """Count the samples of a record that lie before an instant.
+
+    Parameters
+    ----------
+    since : float
+        The instant, from the first sample on [s].
+    time_step : float
+        Step in time [s].
+    count : int
+        Number of samples of the record.
+
+    Returns
+    -------
+    int
+        How many to leave out.
+
+    Raises
+    ------
+    ValueError
+        If the instant is negative, or beyond the record.
+    """
+    with checking() as check:
+        since = check.not_negative("since", since, "s")
+        if not check.faults and since > (count - 1) * time_step:
+            check.refuse(
+                "since", f"must lie within the record, {(count - 1) * time_step:.6g} s at most, got {since!r} s"
+            )
+    # A time is a whole number of steps but for rounding.
+    return int(np.ceil(since / time_step - 1e-6))

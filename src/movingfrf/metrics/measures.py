@@ -13,14 +13,14 @@ from movingfrf.metrics.comfort import check_weighting
 from movingfrf.metrics.entry import History, Random, Table
 from movingfrf.metrics.fatigue import check_random
 from movingfrf.metrics.listed import TABLES, peak, rms
-from movingfrf.metrics.loads import check_coupled
+from movingfrf.metrics.loads import after, check_coupled
 from movingfrf.results.labels import Measure
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def measures(result: xr.Dataset) -> list[Measure]:
+def measures(result: xr.Dataset, *, since: float = 0.0) -> list[Measure]:
     """Measure every contact and degree of freedom, or every observation point.
 
     Parameters
@@ -28,6 +28,8 @@ def measures(result: xr.Dataset) -> list[Measure]:
     result : xarray.Dataset
         The coupled response of a vehicle, from `simulate`, `cdfm`, `sim` or `duhamel`; or that to prescribed
         loads, from `moving_loads`, `newmark_loads` or `duhamel_loads`.
+    since : float
+        Seconds to leave out at the start [s], as in `assess`.
 
     Returns
     -------
@@ -39,7 +41,7 @@ def measures(result: xr.Dataset) -> list[Measure]:
     Raises
     ------
     ValueError
-        If the result is neither of these.
+        If the result is neither of these, or nothing is left of the record.
 
     References
     ----------
@@ -49,7 +51,7 @@ def measures(result: xr.Dataset) -> list[Measure]:
     if "force" in variables and "deflection" in variables:
         return [
             measure
-            for point, deflection in zip(result.point.values, result.deflection.values.T, strict=True)
+            for point, deflection in zip(result.point.values, after(result, since).deflection.values.T, strict=True)
             for measure in (
                 Measure(f"deflection at {point:g} m", "rms", rms(deflection), "m"),
                 Measure(f"deflection at {point:g} m", "peak", peak(deflection), "m"),
@@ -57,7 +59,7 @@ def measures(result: xr.Dataset) -> list[Measure]:
         ]
     with checking() as check:
         result = check_coupled(check, result, "deflection", "static_deflection")
-    history = History(whole=result)
+    history = History(whole=result, since=since)
     return _everywhere(
         partial(Table.of_history, history=history, usual=True),
         contact=range(result.sizes["contact"]),

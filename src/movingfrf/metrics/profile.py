@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from dataclasses import dataclass
 
 import numpy as np
@@ -241,6 +243,32 @@ def as_dict(found: ProfileDescription, understood: str = "") -> dict[str, object
     }
     cleaned: dict[str, object] = finite(content)
     return cleaned
+
+
+def indices_as_csv(found: ProfileDescription) -> str:
+    """Write the roughness index of every segment as a table.
+
+    Parameters
+    ----------
+    found : ProfileDescription
+        What `describe_profile` returned.
+
+    Returns
+    -------
+    str
+        CSV text: length of the segments, where each begins and ends [m], and the index of each path [m/km]; heads
+        alone of a profile without segments.
+    """
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(
+        ["segment [m]", "start [m]", "end [m]", *(f"IRI of path {path.number} [m/km]" for path in found.paths)]
+    )
+    for span in found.paths[0].indices:
+        for n, row in enumerate(zip(*(path.indices[span].tolist() for path in found.paths), strict=True)):
+            edges = (found.profile.stations[0] + span * at for at in (n, n + 1))
+            table.writerow([f"{span:g}", *(f"{edge:.12g}" for edge in edges), *row])
+    return text.getvalue()
 
 
 def _path(

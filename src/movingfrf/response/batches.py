@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cache, wraps
-from typing import ParamSpec, TypeVar
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from movingfrf._basics.arrays import ComplexArray
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,15 +48,23 @@ def unthreaded(function: Callable[P, T]) -> Callable[P, T]:
 
     @wraps(function)
     def on_one_thread(*args: P.args, **keywords: P.kwargs) -> T:
-        with _threads().limit(limits=1):
+        pools = _threads()
+        with pools.limit(limits=1) if pools else nullcontext():
             return function(*args, **keywords)
 
     return on_one_thread
 
 
 @cache
-def _threads() -> ThreadpoolController:
-    """Find NumPy's thread pools, once: that takes as long as a quarter car's response."""
+def _threads() -> ThreadpoolController | None:
+    """Find NumPy's thread pools, once: that takes as long as a quarter car's response.
+
+    None without threadpoolctl, as in a browser, which has no threads.
+    """
+    try:
+        from threadpoolctl import ThreadpoolController
+    except ImportError:
+        return None
     return ThreadpoolController()
 
 

@@ -36,8 +36,8 @@ def save(result: xr.Dataset, file: Path) -> None:
     write_whole(file, as_netcdf(result))
 
 
-def load(file: Path) -> xr.Dataset:
-    """Open a result that `save` wrote.
+def opened(file: Path) -> xr.Dataset:
+    """Open a result of any kind that `save` wrote.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def load(file: Path) -> xr.Dataset:
     OSError
         If the file cannot be read.
     ValueError
-        If it is not netCDF, no result of the package, or lacks a variable or a finite number in one.
+        If it is not netCDF, or no result of the package.
     """
     import xarray as xr
 
@@ -66,14 +66,38 @@ def load(file: Path) -> xr.Dataset:
             result: xr.Dataset = opened.load()
     except OSError:
         raise ValueError(f"{file}: is not a netCDF file, or a damaged one") from None
-    kind = kind_of(result)
+    if "movingfrf" not in result.attrs or kind_of(result) is None:
+        raise ValueError(f"{file}: is no result of movingfrf")
+    return result
+
+
+def load(file: Path) -> xr.Dataset:
+    """Open histories that `save` wrote, to measure them.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+
+    Returns
+    -------
+    xarray.Dataset
+        The result, wholly in memory.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If it is not netCDF, no result of the package, no histories, or lacks a variable or a finite number in one.
+    """
+    result = opened(file)
+    kind = str(kind_of(result))
     if kind == "random":
         raise ValueError(
             f"{file}: holds the response to a random road, which `movingfrf random` has measured already, see its "
             "summary.json; `movingfrf measure` takes histories, as `movingfrf run` writes them"
         )
-    if "movingfrf" not in result.attrs or kind is None:
-        raise ValueError(f"{file}: is no result of movingfrf")
     if kind not in HISTORIES:
         raise ValueError(f"{file}: holds no histories, as `movingfrf run` writes them, but a result of kind {kind}")
     schema = SCHEMAS[kind]
@@ -121,7 +145,7 @@ def summary_as_json(result: xr.Dataset, found: list[Measure]) -> str:
         JSON text; a number without a finite value is null.
     """
     settings: Mapping[str, Any] = {
-        key: value for key, value in result.attrs.items() if key not in ("findings", "scenario")
+        key: value for key, value in result.attrs.items() if key not in ("findings", "scenario", "Conventions")
     }
     content = {
         "settings": settings,

@@ -245,18 +245,46 @@ def labelled(values: Mapping[str, ArrayLike], attributes: Mapping[str, str | flo
     Returns
     -------
     xarray.Dataset
-        With units and long names on every variable.
+        With units and long names on every variable, as the CF conventions want them, and where they are kept a word
+        that they are. What is in metres for some degrees of freedom and in radians for others has a comment instead
+        of one unit.
     """
     import xarray as xr
 
     schema = SCHEMAS[str(attributes["kind"])]
+    of_dofs = {str(unit) for unit in np.asarray(values.get("dof_unit", ()))}
     data: dict[str, xr.Variable] = {}
     coordinates: dict[str, xr.Variable] = {}
     for name, value in values.items():
         label = schema[name]
-        variable = xr.Variable(label.dims, np.asarray(value), {"units": label.units, "long_name": label.long_name})
+        units = {unit_of(label.units, dof_unit) for dof_unit in of_dofs or {""}}
+        said = {"units": units.pop()} if len(units) == 1 else {"comment": f"in {label.units}, as dof_unit says"}
+        variable = xr.Variable(label.dims, np.asarray(value), {**said, "long_name": label.long_name})
+        if label.coordinate:
+            variable.encoding["_FillValue"] = None  # of a coordinate nothing is missing
         (coordinates if label.coordinate else data)[name] = variable
-    return xr.Dataset(data, coordinates, dict(attributes))
+    found = xr.Dataset(data, coordinates, dict(attributes))
+    return found.assign_attrs(Conventions="CF-1.11") if _keeps_cf(found) else found
+
+
+def _keeps_cf(result: xr.Dataset) -> bool:
+    """Whether what the CF conventions ask of numbers is so: they are real, and those along a dimension in order."""
+    steps = [
+        np.diff(each) for each in (index.values for index in result.indexes.values()) if each.dtype.kind in "if"
+    ]
+    real = all(variable.dtype.kind != "c" for variable in result.variables.values())
+    return real and all((step > 0).all() or (step < 0).all() for step in steps)
+
+
+def unit_of(units: str, dof_unit: str = "") -> str:
+    """Take the unit for a degree of freedom in m or rad; what has one unit for all, has it here too.
+
+    Examples
+    --------
+    >>> unit_of("m/s2 or rad/s2", "rad")
+    'rad/s2'
+    """
+    return units.split(" or ")[-1 if dof_unit == "rad" else 0]
 
 
 def resolved(result: xr.Dataset) -> xr.Dataset:

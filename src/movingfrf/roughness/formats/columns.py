@@ -160,6 +160,8 @@ def numbers(data: bytes, encoding: str, layout: ColumnLayout) -> FloatArray:
             index_col=False,
             dtype=np.float64,
             encoding=encoding,
+            # Before 3.1 pandas reads decimals to the last digit but one unless it is told; later it warns of that.
+            float_precision="round_trip" if [int(n) for n in pd.__version__.split(".")[:2]] < [3, 1] else None,
         )
     except (ValueError, OverflowError) as error:
         raise ValueError(_first_fault(data, encoding, layout) or f"cannot be read as numbers: {error}") from None
