@@ -9,8 +9,8 @@ FAULTS = [
     Fault(
         "file that is written where it stands",
         "_basics/output.py",
-        "[(temporary / str(number), folder / name)",
-        "[(folder / name, folder / name)",
+        "file, target = temporary / str(number), folder / name",
+        "file, target = folder / name, folder / name",
     ),
     Fault("folder made for nothing", "_basics/output.py", "each.rmdir()", "pass"),
     Fault("temporary place in a message", "_basics/output.py", "or str(error), str(place))", "or str(error))"),
