@@ -50,6 +50,19 @@ def test_new_check_run(tmp_path, capsys):
     ]
 
 
+def test_without_a_report_none_of_an_earlier_run_stays(scenario, tmp_path, capsys):
+    folder = tmp_path / "out"
+    assert main(["run", str(scenario), "-o", str(folder)]) == 0
+    (folder / "notes.txt").write_text("mine")
+    whole = (folder / "result.nc").read_bytes()
+    scenario.write_text(edited(duration=1.0))
+    capsys.readouterr()
+    assert main(["run", str(scenario), "-o", str(folder), "--no-report"]) == 0
+    assert "report.html" not in capsys.readouterr().out
+    assert sorted(file.name for file in folder.iterdir()) == ["notes.txt", "result.nc", "summary.json"]
+    assert (folder / "result.nc").read_bytes() != whole
+
+
 def test_new_prints_without_a_file_and_protects_what_exists(tmp_path, capsys):
     assert main(["new"]) == 0
     assert "[guideway.beam]" in capsys.readouterr().out

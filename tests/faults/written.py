@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.faults.fault import Fault
 
 FAULTS = [
+    Fault("report of another run that stays", "_basics/output.py", "target.unlink(missing_ok=True)", "pass"),
     # Files.
     Fault(
         "file that is written where it stands",
