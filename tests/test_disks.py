@@ -345,6 +345,11 @@ def test_a_pipe_that_nobody_reads_and_a_full_device(arguments):
         assert done.returncode == 2
 
 
+def test_nothing_can_be_said_at_all():
+    with open("/dev/full", "w") as full:
+        assert subprocess.run([sys.executable, "-m", "movingfrf", "new"], stdout=full, stderr=full).returncode == 2
+
+
 @pytest.mark.parametrize("encoding", ["", *(pytest.param(e, marks=pytest.mark.slow) for e in ("ascii", "cp1252"))])
 def test_a_console_without_all_letters(encoding, given, tmp_path):
     """`−` is in none of them; a scenario that is redirected is UTF-8 all the same."""

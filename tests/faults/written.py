@@ -23,7 +23,7 @@ FAULTS = [
     # Standard output.
     Fault("letters that are refused", "commands/streams.py", '"replace", line', '"strict", line'),
     Fault("nameless standard output", "commands/main.py", "error.filename == OUTPUT and placed", "False"),
-    Fault("Python's last word on a full device", "commands/main.py", "            os.dup2(", "            id("),
+    Fault("status of Python's own end", "commands/main.py", "            stream.flush()", "            pass"),
     Fault(
         "scenario in the letters of the console",
         "commands/console.py",
@@ -32,10 +32,9 @@ FAULTS = [
     ),
     # Told to end.
     Fault("heard too late", "__init__.py", "    heed()  # before", "    pass  # before"),
-    Fault("heard by everybody", "_basics/ending.py", '.partition(".")[0] == "movingfrf"', ' != ""'),
+    Fault("heard by others", "_basics/ending.py", '.partition(".")[0] == "movingfrf"', '.startswith("m")'),
     Fault("heard although ignored", "_basics/ending.py", "!= _signal.SIG_IGN:", "is not None:"),
     Fault("exception in place of an end", "_basics/ending.py", "    os._exit(128 + number)", "    sys.exit(130)"),
-    Fault("second interrupt", "_basics/ending.py", "    ignore()\n    for undo", "    for undo"),
     Fault("nothing written, though it was", "_basics/ending.py", "if placed else", "if not placed else"),
     Fault("half a set", "_basics/output.py", "with undisturbed():", "with suppress(ValueError):"),
     Fault("interrupt that is swallowed", "_basics/undoing.py", "signal.raise_signal(got)", "int(got)"),
