@@ -420,6 +420,8 @@ def test_keys_say_what_the_signature_says():
     assert keys["sides"].type == tuple[float, float]  # None is the default, no value
     assert keys["hitches"].default == ()
     assert [key.name for kind in DRIVE["run"].kinds.values() for key in kind.keys if not key.needed] == [
+        "speed",
+        "speed_kmh",
         "start",
         "time_step",
         "truncation",

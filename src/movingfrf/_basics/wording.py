@@ -52,6 +52,30 @@ def plain(value: float) -> str:
     return f"{value:.10g}".replace("-", "−")
 
 
+def in_both_units(speed: float, *, in_kmh: bool = False) -> tuple[str, str]:
+    """Write a speed in m/s and in km/h, as it was given first and the other as one writes it.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [m/s].
+    in_kmh : bool
+        Whether it was given in km/h.
+
+    Returns
+    -------
+    tuple of str
+        Two numbers with their units.
+
+    Examples
+    --------
+    >>> in_both_units(69.4444), in_both_units(250 / 3.6, in_kmh=True)
+    (('69.4444 m/s', '250 km/h'), ('250 km/h', '69.44 m/s'))
+    """
+    given, other = ((3.6 * speed, "km/h"), (speed, "m/s"))[:: 1 if in_kmh else -1]
+    return f"{plain(given[0])} {given[1]}", f"{plain(float(f'{other[0]:.4g}'))} {other[1]}"
+
+
 def is_never(value: float, units: str) -> bool:
     """Tell whether a rate or a share is too small for its digits to mean anything."""
     return units in ("1/s", "1") and 0 < value < NEVER
@@ -71,6 +95,13 @@ def named_paths(numbers: Sequence[int], most: int = 6) -> str:
         words = [*words[: most - 1], f"{len(words) - most + 1} more"]
     *first, last = words
     return f"paths {', '.join(first)} and {last}"
+
+
+def enumerated(words: Sequence[str], most: int = 14) -> str:
+    """Words with commas between them, at most so many: the middle ones are left out."""
+    if len(words) <= most:
+        return ", ".join(words)
+    return f"{', '.join(words[: most - 2])}, …, {words[-1]} ({len(words)} in all)"
 
 
 def some_of(total: int, most: int, what: str) -> str:

@@ -251,7 +251,7 @@ def random(
             result = response()
             alike = one_path(road.profile.one_path, drive.vehicle.paths, drive.vehicle.across)
             findings = with_more(result.attrs["findings"], alike)
-            result = result.assign_attrs(scenario=scenario.text, findings=findings)
+            result = result.assign_attrs(scenario=scenario.text, findings=findings, **drive.journey.given_speed)
             drawn = response(frequency=drawing_frequencies(result))
             found = random_measures(result, slope=slope)
             save(result, temporary / "random.nc")

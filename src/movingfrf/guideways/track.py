@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import Beam
 from movingfrf.guideways.critical import (
     buckles_at,
@@ -24,7 +25,7 @@ from movingfrf.guideways.waves import Ratio, residue_sum
 
 
 @dataclass(frozen=True, slots=True)
-class Track(Remembering):
+class Track(Remembering, Value):
     """A beam on a foundation, infinitely long; made by `track`.
 
     Parameters

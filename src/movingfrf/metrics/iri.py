@@ -63,7 +63,7 @@ GOLDEN_CAR = ReferenceCar(tyre=653.0, suspension=63.3, damping=6.0, unsprung=0.1
 RIDE_NUMBER_CAR = ReferenceCar(tyre=5120.0, suspension=390.0, damping=17.0, unsprung=0.036)
 
 
-def iri(profile: Profile, *, segment: float | None = None, average: float = PROCEDURE.average) -> FloatArray:
+def iri(profile: Profile, segment: float | None = None, *, average: float = PROCEDURE.average) -> FloatArray:
     """Compute the international roughness index of a profile.
 
     The mean rectified speed of the suspension of the golden car, over its speed of 80 km/h, at the n stations:
@@ -179,7 +179,7 @@ def _straight_and_smooth(profile: Profile) -> tuple[Profile, Profile] | None:
 
 
 def ride_number(
-    profile: Profile, *, segment: float | None = None, average: float = PROCEDURE.average
+    profile: Profile, segment: float | None = None, *, average: float = PROCEDURE.average
 ) -> FloatArray:
     """Compute the ride number of a profile: how passengers rate the ride, from 0 (impassable) to 5 (perfect).
 

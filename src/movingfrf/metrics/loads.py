@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import BoolArray, FloatArray, require_memory
 from movingfrf._basics.checks import Checks, checking, real_numbers
+from movingfrf._basics.values import Value
 from movingfrf.results.labels import flaws, resolved
 
 if TYPE_CHECKING:
@@ -19,7 +21,8 @@ if TYPE_CHECKING:
 POINT_SPACING = 0.1
 
 
-class ContactLoss(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ContactLoss(Value):
     """For how long each contact bears nothing."""
 
     share: FloatArray  # of the time, shape (contact,)

@@ -8,6 +8,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray, finite
 from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.values import Value, brief
 from movingfrf._basics.welch import Spectra
 from movingfrf._basics.wording import evenly_spread, named_paths
 from movingfrf.metrics.iri import PROCEDURE, coarse_for_index, straight_index
@@ -37,8 +38,8 @@ class Oddities:
 ODDITIES = Oddities()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PathDescription:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class PathDescription(Value):
     """One path of a profile.
 
     Parameters
@@ -76,8 +77,8 @@ class PathDescription:
     density: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ProfileDescription:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ProfileDescription(Value):
     """A profile, described.
 
     Parameters
@@ -104,6 +105,18 @@ class ProfileDescription:
     paths: tuple[PathDescription, ...]
     coherence: tuple[FloatArray, FloatArray] | None
     findings: tuple[str, ...]
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell the profile, and of each path its class and roughness index, in words."""
+        paths = [
+            (
+                f"path {path.number}",
+                f"ISO 8608 class {path.fit.road_class or 'none'}, IRI "
+                + ("none" if np.isnan(path.index) else f"{path.index:.3g} mm/m"),
+            )
+            for path in self.paths
+        ]
+        return [*self.profile.told(), *paths, ("findings", brief("; ".join(self.findings)) or "none")]
 
     @property
     def length(self) -> float:

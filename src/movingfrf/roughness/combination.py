@@ -97,7 +97,7 @@ def side_by_side(*profiles: Profile) -> Profile:
     return Profile(stations, np.stack(columns, axis=1), source=_sources(profiles))
 
 
-def rolled(profile: Profile, *, radius: float) -> Profile:
+def rolled(profile: Profile, radius: float) -> Profile:
     """Path of the centre of a rigid wheel that rolls over a profile, from its height on a level road.
 
     A round wheel bridges what is narrower than itself: it rises ahead of a step, and never reaches the bottom of a

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.values import Value, brief
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 SLACK = 1e-9
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Profile:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Profile(Value):
     """Elevation of a road over distance; between its samples a cubic spline.
 
     Parameters
@@ -87,6 +88,20 @@ class Profile:
                 if across.size != count:
                     check.refuse("across", f"must have one position [m] for each path, {count}, got {across.size}")
             check.keep("steps", tuple(self.steps))
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell stations, elevation, where it comes from and what was done to it, in words."""
+        stations, elevation, step = self.stations, self.columns, self.even_step()
+        apart = "uneven" if step is None else f"{step:.6g} m apart"
+        places = "" if self.across is None else f", at {', '.join(f'{place:+g}' for place in self.across)} m"
+        lines = [
+            ("stations", f"{stations.size} from {stations[0]:.6g} m to {stations[-1]:.6g} m, {apart}"),
+            ("elevation", f"{elevation.min():.4g} m to {elevation.max():.4g} m"),
+            ("paths", "the same for all" if self.same_across else f"{self.paths}{places}"),
+            ("source", brief(self.source)),
+            ("steps", brief("; ".join(self.steps))),
+        ]
+        return [(name, words) for name, words in lines if words]
 
     @property
     def stations(self) -> FloatArray:

@@ -53,8 +53,8 @@ Draw = Callable[[np.random.Generator, int, Harmonics], ComplexArray]
 
 def realise(
     spectrum: Spectrum,
-    *,
     length: float,
+    *,
     step: float | None = None,
     seed: int | Sequence[int] = 0,
     start: float = 0.0,

@@ -168,20 +168,13 @@ def described_vehicle(vehicle: Vehicle) -> list[Section]:
         (
             "Vehicle",
             [
-                ("degrees of freedom", _enumerated(vehicle.dof_names)),
+                ("degrees of freedom", wording.enumerated(vehicle.dof_names)),
                 ("weight", f"{vehicle.static_loads.sum() / 1e3:.2f} kN"),
             ],
         ),
         ("Contacts", _contacts(vehicle, vehicle.static_loads)),
         ("Vibrations on a rigid road", _vibrations(vehicle)),
     ]
-
-
-def _enumerated(words: Sequence[str], most: int = 14) -> str:
-    """Words with commas between them, at most so many: the middle ones are left out."""
-    if len(words) <= most:
-        return ", ".join(words)
-    return f"{', '.join(words[: most - 2])}, …, {words[-1]} ({len(words)} in all)"
 
 
 def _contacts(
@@ -291,7 +284,7 @@ def _run(case: Drive | Passage) -> list[tuple[str, str]]:
             channels = len(loads.positions) + len(loads.observe)
             through_time, without = NEWMARK, "none"
     lines = [
-        ("speed", f"{journey.speed:g} m/s ({3.6 * journey.speed:g} km/h)"),
+        ("speed", journey.speed_in_words),
         ("travel", f"{journey.duration:g} s over {journey.speed * journey.duration:g} m"),
         ("time steps", f"{journey.samples} of {journey.time_step:g} s"),
     ]

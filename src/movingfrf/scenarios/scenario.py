@@ -12,6 +12,8 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Fault, nearest, shown
 from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.values import Value, brief
+from movingfrf._basics.wording import enumerated
 from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.response.moving_loads import Forces, carried
 from movingfrf.response.simulation import driven
@@ -53,8 +55,8 @@ COUPLED_BY = {"cdfm": SOLVED, "sim": EXCHANGED}
 NEWMARK = "newmark"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Drive:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Drive(Value):
     """A vehicle on a rough road.
 
     Parameters
@@ -73,6 +75,17 @@ class Drive:
     vehicle: Vehicle
     road: Road
     journey: Journey
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell guideway, vehicle, road and journey, in words."""
+        (_, dofs), (_, contacts), (_, weight) = self.vehicle.told()
+        return [
+            ("guideway", brief(self.guideway)),
+            ("vehicle", f"{weight}; {dofs}"),
+            ("contacts", contacts),
+            ("road", brief(self.road.description)),
+            ("journey", f"{self.journey.duration:g} s at {self.journey.speed_in_words}"),
+        ]
 
     @property
     def places(self) -> FloatArray:
@@ -123,8 +136,8 @@ class Drive:
         return result.assign_attrs(road=self.road.description, **spectrum)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Passage:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Passage(Value):
     """Prescribed loads that travel along a road.
 
     Parameters
@@ -140,6 +153,15 @@ class Passage:
     guideway: Guideway | FiniteGuideway
     loads: Loads
     journey: Journey
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell guideway, loads and journey, in words."""
+        return [
+            ("guideway", brief(self.guideway)),
+            ("loads", f"at {enumerated([f'{place:g}' for place in self.loads.positions], 8)} m"),
+            ("observed", f"at {enumerated([f'{place:g}' for place in self.loads.observe], 8)} m"),
+            ("journey", f"{self.journey.duration:g} s at {self.journey.speed_in_words}"),
+        ]
 
     @property
     def places(self) -> FloatArray:
@@ -204,8 +226,8 @@ class Passage:
         )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Scenario:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Scenario(Value):
     """A checked scenario, ready to run: what a user wrote, and the case that it says.
 
     Parameters
@@ -224,6 +246,10 @@ class Scenario:
     text: str
     case: Drive | Passage
     folder: Path = Path()
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell name and case, in words."""
+        return [("name", self.name), *self.case.told()]
 
     @property
     def guideway(self) -> Guideway | FiniteGuideway:
@@ -264,7 +290,7 @@ class Scenario:
         SolveError
             If the case has no meaningful answer.
         """
-        return self.case.run(progress, method).assign_attrs(scenario=self.text)
+        return self.case.run(progress, method).assign_attrs(scenario=self.text, **self.journey.given_speed)
 
 
 def shortened(scenario: Scenario, duration: float) -> Scenario:

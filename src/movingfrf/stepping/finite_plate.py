@@ -13,6 +13,7 @@ import scipy.sparse as sparse
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import EulerBernoulliBeam
 from movingfrf.guideways.foundations import ShearLayer, Spring
 from movingfrf.guideways.sampled import SampledGuideway
@@ -42,8 +43,8 @@ class Stiffnesses(NamedTuple):
     twist: float
 
 
-@dataclass(frozen=True, slots=True)
-class PlateRows:
+@dataclass(frozen=True, slots=True, eq=False)
+class PlateRows(Value):
     """Interpolation on rectangles of cubic functions along times cubic functions across (Bogner, Fox, Schmit)."""
 
     first: FloatArray  # (2,) position of the first node, along and across [m]

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf._basics.smooth import smooth_step
+from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import EulerBernoulliBeam
 from movingfrf.guideways.foundations import Foundation, OnMass, ShearLayer, Spring
 from movingfrf.guideways.track import Track
@@ -54,8 +55,8 @@ class Absorption:
 ABSORPTION = Absorption()
 
 
-@dataclass(frozen=True, slots=True)
-class CubicRows:
+@dataclass(frozen=True, slots=True, eq=False)
+class CubicRows(Value):
     """Interpolation on a chain of cubic elements."""
 
     mesh: Mesh

@@ -212,7 +212,7 @@ CATALOGUE: dict[str, Entry] = {
 }
 
 
-def catalogue(*, name: str) -> Vehicle:
+def catalogue(name: str) -> Vehicle:
     """Take a vehicle from the catalogue; `movingfrf vehicles` lists and describes them.
 
     Parameters
@@ -232,7 +232,7 @@ def catalogue(*, name: str) -> Vehicle:
 
     Examples
     --------
-    >>> catalogue(name="half_truck").static_loads.round().tolist()
+    >>> catalogue("half_truck").static_loads.round().tolist()
     [98400.0, 100106.0]
     """
     with checking() as check:

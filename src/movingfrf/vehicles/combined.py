@@ -91,7 +91,7 @@ def convoy(
     )
 
 
-def train(*, car: Vehicle, count: int, spacing: float) -> Vehicle:
+def train(car: Vehicle, count: int, *, spacing: float) -> Vehicle:
     """Repeat a vehicle: a train of equal cars.
 
     Parameters

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.values import Value
 from movingfrf.vehicles.dynamics import state_matrix
 from movingfrf.vehicles.vehicle import Vehicle
 
 
-class Mode(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Mode(Value):
     """One vibration of a vehicle on its contact springs, the guideway rigid."""
 
     pole: complex  # [rad/s]

@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.values import Value
+from movingfrf._basics.wording import enumerated
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.dynamics import Dynamics, Quadratic, held, parts, split
 
@@ -37,8 +39,8 @@ class Touching(TypedDict):
     cams: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Vehicle(Remembering):
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Vehicle(Remembering, Value):
     """A linear vehicle: M z̈ + C ż + K z on its own, joined to the guideway by its contacts.
 
     Parameters
@@ -90,6 +92,19 @@ class Vehicle(Remembering):
             _check_held(check, self)
         with checking() as check:
             _check_carried(check, self)
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell degrees of freedom, contacts, weight, in words."""
+        loads = self.static_loads
+        contacts = [
+            f"{contact.name or f'contact {number}'} at {contact.position:.4g} m ({load / 1e3:.4g} kN)"
+            for number, (contact, load) in enumerate(zip(self.contacts, loads.tolist(), strict=True))
+        ]
+        return [
+            ("degrees of freedom", enumerated(self.dof_names, 8)),
+            ("contacts", enumerated(contacts, 4)),
+            ("weight", f"{loads.sum() / 1e3:.4g} kN"),
+        ]
 
     # The fields as arrays: what the constructor stored.
     @property

@@ -9,6 +9,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.values import Value
 
 # Measured roads lie between 1 and 4; powers far beyond overflow.
 LARGEST_WAVINESS = 10.0
@@ -31,7 +32,7 @@ class Spectrum(Protocol):
         ...
 
 
-class BandLimited(ABC):
+class BandLimited(ABC, Value):
     """A formula and its integral, cut off at the ends of a band: all that a spectrum needs."""
 
     __slots__ = ()

@@ -9,7 +9,7 @@ from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.steps.base import Step, changed
 
 
-def cropped(profile: Profile, *, first: float | None = None, last: float | None = None) -> Profile:
+def cropped(profile: Profile, first: float | None = None, last: float | None = None) -> Profile:
     """Take the stations from one distance to another.
 
     Parameters

@@ -9,7 +9,7 @@ from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.steps.base import Step, changed, like
 
 
-def detrended(profile: Profile, *, degree: int = 1) -> Profile:
+def detrended(profile: Profile, degree: int = 1) -> Profile:
     """Take out drift: of each path the polynomial that fits it best.
 
     Parameters

@@ -6,7 +6,7 @@ from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.steps.base import Step, without_waves
 
 
-def low_passed(profile: Profile, *, wavelength: float) -> Profile:
+def low_passed(profile: Profile, wavelength: float) -> Profile:
     """Take out short waves, without shifting the others: a Butterworth filter of second order, forth and back.
 
     A wave of length λ keeps 1/(1 + (λ_c/λ)⁴) of its amplitude, half of it at λ = λ_c. So it is while both are many

@@ -8,7 +8,7 @@ from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.steps.base import Step, extended, longer
 
 
-def mirrored(profile: Profile, *, length: float) -> Profile:
+def mirrored(profile: Profile, length: float) -> Profile:
     """Make a longer road of a short one by driving it forth and back, forth and back.
 
     There is no jump where it turns, but a corner; such a road is periodic over twice the length of the original.

@@ -10,7 +10,7 @@ from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.steps.base import Step, extended, longer
 
 
-def repeated(profile: Profile, *, length: float, overlap: float = 0.0) -> Profile:
+def repeated(profile: Profile, length: float, *, overlap: float = 0.0) -> Profile:
     """Make a longer road of a short one by putting copies of it behind each other.
 
     Such a road is periodic: its spectrum has lines, and what happens once on the original happens every time.

@@ -9,7 +9,7 @@ from movingfrf.roughness.profile import SLACK, Profile
 from movingfrf.roughness.steps.base import FILTER, Step, changed, filtered, like, require_room
 
 
-def resampled(profile: Profile, *, step: float) -> Profile:
+def resampled(profile: Profile, step: float) -> Profile:
     """Put the stations at an even step: on the cubic spline, after waves that are too short for it are taken out.
 
     If the new step is longer than that of the profile (the median one where it is uneven), waves shorter than 2.5

@@ -11,7 +11,7 @@ from movingfrf.roughness.profile import Profile
 from movingfrf.roughness.steps.base import Step, changed
 
 
-def selected(profile: Profile, *, paths: Sequence[int]) -> Profile:
+def selected(profile: Profile, paths: Sequence[int]) -> Profile:
     """Take some of the paths, in the order in which they are named.
 
     Parameters
