@@ -243,7 +243,8 @@ def test_what_is_no_vehicle_and_no_spectrum():
     with pytest.raises(mf.ParameterError, match="vehicle must be a Vehicle, got None"):
         mf.transfer(ROAD, None, speed=1.0, frequency=[1.0])
     with pytest.raises(
-        mf.ParameterError, match="spectrum must be a roughness spectrum, got the class IsoRoad itself"
+        mf.ParameterError,
+        match="spectrum must be a roughness spectrum, as IsoRoad is, got the class IsoRoad itself",
     ):
         respond(spectrum=mf.IsoRoad, coherence=None)
 
@@ -271,7 +272,8 @@ def test_what_is_refused():
     with pytest.raises(mf.ParameterError, match="coherence must not be negative"):
         respond("full_truck", coherence=-0.5)
     with pytest.raises(
-        mf.ParameterError, match="must be a roughness spectrum, as IsoRoad is, got an object of Profile"
+        mf.ParameterError,
+        match="must be a roughness spectrum, as IsoRoad is, got a Profile; `simulate` takes a profile",
     ):
         respond(spectrum=mf.bump(height=0.1, width=1.0, at=1.0, length=9.0))
     with pytest.raises(mf.ParameterError, match="exposure must be positive"):

@@ -17,6 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.door import beyond_limits, instead_of
+from movingfrf._basics.door import shown as shown
 
 Kind = TypeVar("Kind")
 
@@ -82,15 +84,6 @@ def warned(found: Iterable[Finding]) -> tuple[Finding, ...]:
     return found
 
 
-def shown(value: object) -> str:
-    """Write a refused value, shortened where it is long."""
-    try:
-        text = repr(value)
-    except ValueError:  # an integer of thousands of digits
-        text = "a number of thousands of digits"
-    return text if len(text) <= 60 else f"{text[:57]}..."
-
-
 def nearest(word: str, known: Iterable[str]) -> str:
     """Suggest the nearest spelling, in brackets; nothing if there is none."""
     close = difflib.get_close_matches(word, list(known), n=1)
@@ -142,7 +135,8 @@ class Checks:
         """Demand a real, finite number of credible magnitude."""
         value = plain(value)
         if not isinstance(value, Real) or isinstance(value, bool):
-            self.refuse(name, f"must be {in_brackets(condition, unit)}, got {shown(value)}")
+            wanted = in_brackets(condition, unit)
+            self.refuse(name, f"must be {wanted}, got {shown(value)}{beyond_limits(name, value)}")
             return float("nan")
         try:
             number = float(value)
@@ -207,7 +201,8 @@ class Checks:
         try:
             array = real_numbers(value)
         except (TypeError, ValueError, OverflowError, RecursionError):
-            self.refuse(name, f"must be {in_brackets('an array of numbers', unit)}, got {shown(value)}")
+            wanted = in_brackets("an array of numbers", unit)
+            self.refuse(name, f"must be {wanted}, got {shown(value)}{instead_of('numbers', value)}")
             return np.full([n or 1 for n in shape or ()], np.nan)
         shape = array.shape if shape is None else shape
         wanted = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
@@ -253,7 +248,8 @@ class Checks:
         try:
             first, second = value
         except (TypeError, ValueError):
-            self.refuse(name, f"must be {in_brackets('two numbers', unit)}, got {shown(value)}")
+            wanted = in_brackets("two numbers", unit)
+            self.refuse(name, f"must be {wanted}, got {shown(value)}{beyond_limits(name, value)}")
             return (float("nan"), float("nan"))
         check = self.finite if signed else self.positive if positive else self.not_negative
         check = self.positive_or_infinite if infinite else check

@@ -11,9 +11,6 @@ from typing import Any
 
 import numpy as np
 
-# Of what a line of a value holds, how much is shown, in letters [a convention].
-LINE = 88
-
 
 class Value:
     """Base of frozen dataclasses that hold arrays, or values that do; they say `eq=False`.
@@ -109,13 +106,15 @@ def digest(value: Any) -> str:
     return blake2b(repr(content(value)).encode(), digest_size=8).hexdigest()
 
 
-def brief(value: Any) -> str:
+def brief(value: Any, most: int = 88) -> str:
     """Write a value in at most a line: of an array its shape and between what it lies.
 
     Parameters
     ----------
     value : object
         Anything.
+    most : int
+        Letters in a line.
 
     Returns
     -------
@@ -137,4 +136,4 @@ def brief(value: Any) -> str:
     if isinstance(value, Value) and str(value).count("\n"):
         value = "; ".join(words for _, words in value.told())
     text = " ".join(str(value).split())
-    return text if len(text) <= LINE else f"{text[: LINE - 1]}…"
+    return text if len(text) <= most else f"{text[: most - 1]}…"

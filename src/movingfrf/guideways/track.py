@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.door import given
 from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import Beam
@@ -150,9 +151,9 @@ def track(beam: Beam, foundation: Foundation) -> Track:
     """
     with checking() as check:
         if not isinstance(beam, Beam):
-            check.refuse("beam", f"must be a beam, got {beam!r}")
+            check.refuse("beam", f"must be a beam, got {given(beam)}")
         if not isinstance(foundation, Foundation):
-            check.refuse("foundation", f"must be a foundation, got {foundation!r}")
+            check.refuse("foundation", f"must be a foundation, got {given(foundation)}")
     made = Track(beam, foundation)
     if (wavenumber := buckles_at(made.stiffness(damped=False))) > 0:
         raise ValueError(

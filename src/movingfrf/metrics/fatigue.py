@@ -13,6 +13,7 @@ from scipy.special import gammaln
 
 from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import Checks, checking, plain, shown
+from movingfrf._basics.door import mistaken
 from movingfrf.results.labels import RANDOM_QUANTITIES, kind_of
 
 if TYPE_CHECKING:
@@ -360,4 +361,4 @@ def spectral_fatigue(
 def check_random(check: Checks, result: object) -> None:
     """Refuse what is not the response to a random road."""
     if kind_of(result) != "random":
-        check.refuse("result", "must be the response to a random road, from `random_response`")
+        check.refuse("result", mistaken("random result", result))

@@ -14,7 +14,7 @@ from movingfrf._basics.wording import evenly_spread, named_paths
 from movingfrf.metrics.iri import PROCEDURE, coarse_for_index, straight_index
 from movingfrf.metrics.spectra import path_spectra
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES
 from movingfrf.roughness.steps.resampled import resampled
 from movingfrf.roughness.steps.selected import selected
@@ -153,6 +153,7 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
     >>> describe_profile(road).paths[0].fit.road_class
     'B'
     """
+    require_profile(profile)
     steps = np.diff(profile.stations)
     alike = profile.alike
     findings = [

@@ -19,7 +19,7 @@ from movingfrf.response.survey import SteadyState, survey
 from movingfrf.response.system import CoupledHistories, Response, System
 from movingfrf.results.labels import attributes, labelled, turned
 from movingfrf.roughness.excitation import Excitation, Touch, excite
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
@@ -169,6 +169,7 @@ def driven(
     """
     require_guideway(guideway)
     require_vehicle(vehicle)
+    require_profile(profile)
     progress("profile", 0.0)
     excitation = excitation_of(profile, vehicle, journey)
     system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)

@@ -13,7 +13,7 @@ from movingfrf._basics.checks import ParameterError, checking, option, shown
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -189,6 +189,7 @@ def write_profile(
     >>> read_profile(path).profile.stations.tolist()
     [0.0, 1.0, 2.0, 3.0]
     """
+    require_profile(profile)
     path = Path(file)
     writer(path, format=format, encoding=encoding)(profile, path)
 

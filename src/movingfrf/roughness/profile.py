@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.door import mistaken
 from movingfrf._basics.values import Value, brief
 
 if TYPE_CHECKING:
@@ -202,3 +203,23 @@ class Profile(Value):
 
         elevation = np.asarray(self.elevation)
         return CubicSpline(self.stations, elevation if elevation.ndim == 1 else elevation[:, path])
+
+
+def require_profile(profile: object, name: str = "profile") -> None:
+    """Refuse what is no profile.
+
+    Parameters
+    ----------
+    profile : object
+        What was given.
+    name : str
+        Name of the argument.
+
+    Raises
+    ------
+    ValueError
+        If it is no `Profile`.
+    """
+    with checking() as check:
+        if not isinstance(profile, Profile):
+            check.refuse(name, mistaken("profile", profile))

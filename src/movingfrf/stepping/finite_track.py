@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf._basics.door import instead_of
 from movingfrf._basics.smooth import smooth_step
 from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import EulerBernoulliBeam
@@ -161,7 +162,11 @@ def finite_track(
     """
     with checking() as check:
         if not isinstance(track, Track) or not isinstance(track.beam, EulerBernoulliBeam):
-            check.refuse("track", f"must have an Euler–Bernoulli beam to be cut into elements, got {shown(track)}")
+            check.refuse(
+                "track",
+                f"must have an Euler–Bernoulli beam to be cut into elements, got {shown(track)}"
+                f"{instead_of('track', track)}",
+            )
         first, last = check.finite("first", first, "m"), check.finite("last", last, "m")
         element = check.positive("element", element, "m")
         both, length = require_stretch(check, (first, last), element, ends, absorbing, travels)

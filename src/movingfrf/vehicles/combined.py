@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import Checks, checking, shown
-from movingfrf.vehicles.vehicle import Vehicle
+from movingfrf.vehicles.vehicle import Vehicle, check_vehicle
 
 
 def convoy(
@@ -114,7 +114,7 @@ def train(car: Vehicle, count: int, *, spacing: float) -> Vehicle:
         If the number is not positive or the cars would overlap.
     """
     with checking() as check:
-        check.listed("car", [car], Vehicle)
+        check_vehicle(check, car, "car")
         count = check.whole("count", count, least=1)
         spacing = check.positive("spacing", spacing, "m")
     # Two dozen square matrices of all degrees of freedom, while they are joined and checked.
@@ -176,7 +176,7 @@ def seated(
     ('body', 'wheel', 'driver')
     """
     with checking() as check:
-        check.listed("vehicle", [vehicle], Vehicle)
+        check_vehicle(check, vehicle)
         driver_mass = check.positive("driver_mass", driver_mass, "kg")
         cushion_stiffness = check.positive("cushion_stiffness", cushion_stiffness, "N/m")
         cushion_damping = check.not_negative("cushion_damping", cushion_damping, "N s/m")
@@ -263,7 +263,7 @@ def on_paths(vehicle: Vehicle, paths: Sequence[int]) -> Vehicle:
     [1]
     """
     with checking() as check:
-        check.listed("vehicle", [vehicle], Vehicle)
+        check_vehicle(check, vehicle)
         if not isinstance(paths, (list, tuple)):
             check.refuse("paths", f"must be a list of whole numbers, got {shown(paths)}")
     with checking() as check:

@@ -10,7 +10,7 @@ import numpy as np
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.values import Value
 from movingfrf.vehicles.dynamics import state_matrix
-from movingfrf.vehicles.vehicle import Vehicle
+from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -57,6 +57,7 @@ def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
     >>> [mode.description for mode in vehicle_modes(car)]
     ['body 100 %', 'wheel 98 %']
     """
+    require_vehicle(vehicle)
     mobility, found = np.diag(np.linalg.inv(vehicle.matrices[0])), []
     for part in vehicle.dynamics().parts:
         if not len(part.own.constant):

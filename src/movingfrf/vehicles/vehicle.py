@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.door import mistaken
 from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf._basics.values import Value
 from movingfrf._basics.wording import enumerated
@@ -226,13 +227,15 @@ class Vehicle(Remembering, Value):
         return held(Quadratic.of(mass, damping, stiffness), contact_map, self.springs, self.dashpots)
 
 
-def require_vehicle(vehicle: object) -> None:
+def require_vehicle(vehicle: object, name: str = "vehicle") -> None:
     """Refuse what is no vehicle.
 
     Parameters
     ----------
     vehicle : object
         What was given.
+    name : str
+        Name of the argument.
 
     Raises
     ------
@@ -240,8 +243,13 @@ def require_vehicle(vehicle: object) -> None:
         If it is no `Vehicle`.
     """
     with checking() as check:
-        if not isinstance(vehicle, Vehicle):
-            check.refuse("vehicle", f"must be a Vehicle, got {shown(vehicle)}")
+        check_vehicle(check, vehicle, name)
+
+
+def check_vehicle(check: Checks, vehicle: object, name: str = "vehicle") -> None:
+    """Refuse what is no vehicle, along with whatever else is wrong."""
+    if not isinstance(vehicle, Vehicle):
+        check.refuse(name, mistaken("vehicle", vehicle))
 
 
 def _names(check: Checks, names: Sequence[str]) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.values import digest
-from movingfrf.roughness.spectra.spectrum import BandLimited, Spectrum, band_in_words
+from movingfrf.roughness.spectra.spectrum import BandLimited, Spectrum, band_in_words, require_spectrum
 
 # Amplitude to which levels of roughness refer [m].
 REFERENCE_AMPLITUDE = 1e-6
@@ -218,6 +218,7 @@ def third_octave_levels(spectrum: Spectrum, wavelength: ArrayLike) -> FloatArray
     ValueError
         If a wavelength is not positive.
     """
+    require_spectrum(spectrum)
     with checking() as check:
         centres = check.array("wavelength", wavelength, "m", (None,))
         if not check.faults and (centres <= 0).any():

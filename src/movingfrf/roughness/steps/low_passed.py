@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import Step, without_waves
 
 
@@ -39,6 +39,7 @@ def low_passed(profile: Profile, wavelength: float) -> Profile:
     >>> round(float(middle.max()), 2)
     0.5
     """
+    require_profile(profile)
     return without_waves(profile, "shorter", wavelength)
 
 

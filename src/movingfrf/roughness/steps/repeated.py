@@ -6,7 +6,7 @@ import numpy as np
 
 from movingfrf._basics.checks import checking
 from movingfrf._basics.smooth import smooth_step
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import Step, extended, longer
 
 
@@ -40,6 +40,7 @@ def repeated(profile: Profile, length: float, *, overlap: float = 0.0) -> Profil
     >>> repeated(Profile([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 2.0, 1.0]), length=6.0).elevation.tolist()
     [0.0, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0]
     """
+    require_profile(profile)
     step = profile.require_even("repetition")
     own = profile.stations[-1] - profile.stations[0]
     length, count = longer(length, own, step, profile.paths)

@@ -23,7 +23,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from movingfrf._basics.checks import ValidityWarning
+from movingfrf._basics.checks import ValidityWarning, checking
+from movingfrf._basics.door import mistaken
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.values import Value, brief
 from movingfrf.scenarios.reading import parse_scenario
@@ -159,6 +160,9 @@ def compare(
     SolveError
         If the case has no meaningful answer.
     """
+    with checking() as check:
+        if not isinstance(scenario, Scenario):
+            check.refuse("scenario", mistaken("scenario", scenario))
     compared = chosen(scenario, methods)
     own = Case(scenario=scenario, time_step=scenario.journey.time_step, element=elements(scenario.guideway)[-1])
     for case in (own, replace(own, element=elements(scenario.guideway)[0])):
