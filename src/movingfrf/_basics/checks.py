@@ -90,6 +90,19 @@ def nearest(word: str, known: Iterable[str]) -> str:
     return f" (did you mean {close[0]!r}?)" if close else ""
 
 
+def spelt(word: object, known: Iterable[str]) -> str | None:
+    """Find a known word whatever the case of its letters, and whether hyphen, underscore or blank joins its parts.
+
+    Examples
+    --------
+    >>> spelt("wk", ["Wk", "Wd"]), spelt("Moving_FRF", ["moving-frf"]), spelt("x", ["y"])
+    ('Wk', 'moving-frf', None)
+    """
+    plainly = str.maketrans("-_", "  ")
+    same = {one.casefold().translate(plainly): one for one in known}
+    return same.get(word.casefold().translate(plainly)) if isinstance(word, str) else None
+
+
 def with_unit(number: float, unit: str) -> str:
     """Write a number with its unit; of what has no dimension, the number alone."""
     return f"{number!r}" if unit == "1" else f"{number!r} {unit}"
@@ -192,6 +205,15 @@ class Checks:
             return self.keep(name, str(value))
         self.refuse(name, f"must be a text, got {shown(value)}")
         return ""
+
+    def choice(self, name: str, value: Any, known: Iterable[str]) -> str:
+        """Demand one of some words; returns it as it is known."""
+        known = list(known)
+        if (found := spelt(value, known)) is not None:
+            return self.keep(name, found)
+        hint = nearest(value, known) if isinstance(value, str) else ""
+        self.refuse(name, f"must be one of {', '.join(known)}, got {shown(value)}{hint}")
+        return known[0]
 
     def array(self, name: str, value: ArrayLike, unit: str, shape: tuple[int | None, ...] | None) -> FloatArray:
         """Demand finite numbers in an array of the given shape (None: any, of a length too); returns a frozen copy.

@@ -241,8 +241,7 @@ def spectral_damage(
     with checking() as check:
         f = check.array("frequency", frequency, "Hz", (None,))
         given = check.array("density", density, "unit²/Hz", (f.size,))
-        if not (isinstance(method, str) and method in METHODS):
-            check.refuse("method", f"must be one of {', '.join(METHODS)}, got {shown(method)}")
+        method = check.choice("method", method, METHODS)
         if not check.faults and (f.size < 2 or f[0] < 0 or (np.diff(f) <= 0).any()):
             check.refuse("frequency", "must be at least two numbers, not negative and increasing [Hz]")
         if (given < 0).any():
@@ -337,8 +336,7 @@ def spectral_fatigue(
     """
     with checking() as check:
         check_random(check, result)
-        if not (isinstance(quantity, str) and quantity in RANDOM_QUANTITIES):
-            check.refuse("quantity", f"must be one of {', '.join(RANDOM_QUANTITIES)}, got {shown(quantity)}")
+        quantity = check.choice("quantity", quantity, RANDOM_QUANTITIES)
     frequency, density = result.frequency.values, result[f"{quantity}_density"].values
     if "bandwidth" in result.coords:
         # The damage is integrated by trapezoids: so weighted they give the moments of the Gauss points.

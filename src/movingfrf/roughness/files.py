@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import ParameterError, checking, option, shown
+from movingfrf._basics.checks import ParameterError, checking, option, shown, spelt
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
@@ -126,8 +126,8 @@ def read_profile(
             check.refuse("columns", f"must be a list of names or numbers of columns, got {shown(columns)}")
         if not isinstance(crop_rims, bool):
             check.refuse("crop_rims", f"must be true or false, got {shown(crop_rims)}")
-        if format is not None and format not in list(FORMATS):
-            check.refuse("format", f"must be one of {', '.join(FORMATS)}, got {shown(format)}")
+        if format is not None:
+            format = check.choice("format", format, FORMATS)
     try:
         form = _recognised(path, format)
         raw = form.read(path, columns)
@@ -201,7 +201,7 @@ def writer(
 
     It writes wherever it is told to, while its refusals name `file`.
     """
-    form = FORMATS.get(format) if format is not None else _by_ending(file)
+    form = FORMATS.get(spelt(format, FORMATS) or "") if format is not None else _by_ending(file)
     written = [other for other in FORMATS.values() if other.write]
     if form is None and format is not None:
         known = ", ".join(other.name for other in written)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import Fault, nearest, shown
+from movingfrf._basics.checks import Fault, nearest, shown, spelt
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.values import Value, brief
 from movingfrf._basics.wording import enumerated
@@ -120,7 +120,7 @@ class Drive(Value):
         SolveError
             If the case has no meaningful answer.
         """
-        _require_method(method, (MOVING_FRF, *COUPLED_BY), "a vehicle", self.guideway)
+        method = _known_method(method, (MOVING_FRF, *COUPLED_BY), "a vehicle", self.guideway)
         if method in COUPLED_BY:
             result = coupled(
                 (self.guideway, self.vehicle, self.road.profile),
@@ -201,7 +201,7 @@ class Passage(Value):
         SolveError
             If the case has no meaningful answer.
         """
-        _require_method(method, (MOVING_FRF, NEWMARK), "prescribed loads", self.guideway)
+        method = _known_method(method, (MOVING_FRF, NEWMARK), "prescribed loads", self.guideway)
         if method == NEWMARK:
             return loaded(
                 self.guideway,
@@ -358,9 +358,11 @@ def passage_of(scenario: Scenario) -> Passage:
     raise ValueError(f"{scenario.name}: a scenario with prescribed loads is wanted, it has a vehicle")
 
 
-def _require_method(method: str, known: tuple[str, ...], what: str, guideway: Guideway | FiniteGuideway) -> None:
-    if method not in known:
+def _known_method(method: str, known: tuple[str, ...], what: str, guideway: Guideway | FiniteGuideway) -> str:
+    found = spelt(method, known)
+    if found is None:
         if isinstance(guideway, FiniteGuideway):
             known, what = tuple(one for one in known if one != MOVING_FRF), f"{what} on a finite road"
         hint = "" if method in (*COUPLED_BY, NEWMARK) else nearest(str(method), known)
         raise ValueError(f"method must be one of {', '.join(known)} with {what}, got {shown(method)}{hint}")
+    return found

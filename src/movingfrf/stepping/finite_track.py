@@ -12,7 +12,7 @@ import scipy.sparse as sparse
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf._basics.checks import Checks, checking, shown, spelt
 from movingfrf._basics.door import instead_of
 from movingfrf._basics.smooth import smooth_step
 from movingfrf._basics.values import Value
@@ -263,8 +263,8 @@ def require_stretch(
     first, last = interval
     usual = min(ABSORPTION.length, max(last - first, 0.0) / 3)
     length = check.not_negative("absorbing", usual if absorbing is None else absorbing, "m")
-    both = (ends, ends) if isinstance(ends, str) else tuple(ends)
-    if len(both) != 2 or not all(isinstance(end, str) and end in ENDS for end in both):
+    both = tuple(spelt(end, ENDS) for end in ((ends, ends) if isinstance(ends, str) else ends))
+    if len(both) != 2 or None in both:
         check.refuse("ends", f"must be one or two of {', '.join(ENDS)}, got {shown(ends)}")
     following = {end for end, kind in ENDS.items() if kind.follows}
     if travels and not set(both) <= following:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from movingfrf._basics.checks import checking, nearest, shown
+from movingfrf._basics.checks import checking
 from movingfrf.vehicles.cars import full_car, half_car, quarter_car
 from movingfrf.vehicles.rail import carriage
 from movingfrf.vehicles.trucks import Axle, Unit, truck
@@ -236,7 +236,5 @@ def catalogue(name: str) -> Vehicle:
     [98400.0, 100106.0]
     """
     with checking() as check:
-        if not isinstance(name, str) or name not in CATALOGUE:
-            hint = nearest(name, CATALOGUE) if isinstance(name, str) else ""
-            check.refuse("name", f"must be one of {', '.join(CATALOGUE)}, got {shown(name)}{hint}")
+        name = check.choice("name", name, CATALOGUE)
     return CATALOGUE[name].make()

@@ -97,11 +97,10 @@ class IsoRoad(BandLimited):
             If there is no such class.
         """
         with checking() as check:
-            if not isinstance(road_class, str) or road_class.upper() not in CLASS_CENTRES:
-                check.refuse("road_class", f"must be one of {', '.join(CLASS_CENTRES)}, got {road_class!r}")
+            road_class = check.choice("road_class", road_class, CLASS_CENTRES)
             check_waviness(check, waviness)
             checked_band(check, band)
-        return cls(roughness=CLASS_CENTRES[road_class.upper()], waviness=waviness, band=band)
+        return cls(roughness=CLASS_CENTRES[road_class], waviness=waviness, band=band)
 
     def _formula(self, n: FloatArray) -> FloatArray:
         return self.roughness * (n / REFERENCE_FREQUENCY) ** -self.waviness

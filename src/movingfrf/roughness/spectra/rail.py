@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import checking, plain, shown
+from movingfrf._basics.checks import checking, plain, shown, spelt
 from movingfrf.roughness.spectra.spectrum import BandLimited, band_in_words, checked_band, power_integral
 
 # Wavelengths between which the FRA's forms hold: 5 and 1000 feet.
@@ -453,6 +453,8 @@ def _check_and_store(spectrum: BandLimited, roughness: float, unit: str, band: t
 def _listed(track_class: int | str, values: Mapping[Any, float], band: tuple[float, float]) -> float:
     """Roughness of a class that a table lists; a wrong band is reported together with a wrong class."""
     track_class = plain(track_class)
+    if isinstance(track_class, str):
+        track_class = spelt(track_class, [one for one in values if isinstance(one, str)]) or track_class
     known = (
         not isinstance(track_class, (bool, float)) and isinstance(track_class, Hashable) and track_class in values
     )

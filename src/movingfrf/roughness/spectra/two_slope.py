@@ -134,8 +134,7 @@ class TwoSlopeRoad(BandLimited):
             for quality, roughness in kind.roughness.items()
         }
         with checking() as check:
-            if not isinstance(road_class, str) or road_class not in known:
-                check.refuse("road_class", f"must be one of {', '.join(known)}, got {road_class!r}")
+            road_class = check.choice("road_class", road_class, known)
             checked_band(check, band)
         roughness, usual = known[road_class]
         return cls(roughness=roughness, waviness=usual if waviness is None else waviness, band=band)
