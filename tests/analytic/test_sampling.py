@@ -159,7 +159,7 @@ def test_past_the_end_of_a_profile_a_footprint_is_a_guess():
     assert 1 / 3 < ratio < 3
 
 
-@pytest.mark.filterwarnings("ignore:the road begins with a mean slope")
+@pytest.mark.filterwarnings("ignore:the profile begins with a mean slope")
 def test_a_road_that_begins_with_a_kink_under_a_dashpot():
     """The force jumps; no step resolves that, and the finding says how much a finer one still changes."""
     ramp = mf.Profile(np.linspace(-5.0, 60.0, 261), 0.01 * np.linspace(-5.0, 60.0, 261))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 
@@ -95,6 +97,34 @@ def named_paths(numbers: Sequence[int], most: int = 6) -> str:
         words = [*words[: most - 1], f"{len(words) - most + 1} more"]
     *first, last = words
     return f"paths {', '.join(first)} and {last}"
+
+
+class Standing(NamedTuple):
+    """What messages say of a vehicle's contacts: their names, and what they stand on."""
+
+    names: Sequence[str]
+    ground: str = "road"  # or "rail"
+
+    def listed(self, numbers: Sequence[int], most: int = 4) -> str:
+        """Name some contacts, neighbours by the first and the last, at most so many groups.
+
+        Examples
+        --------
+        >>> Standing(["front", "rear"]).listed([1])
+        'contact 1 (rear)'
+        >>> Standing([""] * 64).listed([0, 2, *range(9, 64)])
+        'contacts 0, 2 and 9 to 63'
+        """
+        words = [f"{number} ({self.names[number]})" if self.names[number] else f"{number}" for number in numbers]
+        if len(words) == 1:
+            return f"contact {words[0]}"
+        # Neighbours have one difference between number and rank.
+        runs = [list(run) for _, run in groupby(range(len(words)), lambda rank: numbers[rank] - rank)]
+        groups = [words[run[0]] + (f" to {words[run[-1]]}" if run[1:] else "") for run in runs]
+        if len(groups) > most:
+            groups = [*groups[: most - 1], f"{sum(map(len, runs[most - 1 :]))} more"]
+        *first, last = groups
+        return f"contacts {', '.join(first)} and {last}" if first else f"contacts {last}"
 
 
 def enumerated(words: Sequence[str], most: int = 14) -> str:

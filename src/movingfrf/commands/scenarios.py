@@ -250,7 +250,7 @@ def random(
             )
             result = response()
             alike = one_path(road.profile.one_path, drive.vehicle.paths, drive.vehicle.across)
-            findings = with_more(result.attrs["findings"], alike)
+            findings = with_more(result.attrs["findings"], [*alike, *drive.unusual])
             result = result.assign_attrs(scenario=scenario.text, findings=findings, **drive.journey.given_speed)
             drawn = response(frequency=drawing_frequencies(result))
             found = random_measures(result, slope=slope)

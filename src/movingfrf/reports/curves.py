@@ -219,7 +219,7 @@ def dof_curve(result: xr.Dataset, dof: int | str) -> Curve:
 
 
 def _column(chosen: int | str, names: Sequence[str]) -> int:
-    """Number of what was chosen to be drawn, by its number or its name."""
+    """Find the number of what was chosen to be drawn, by its number or its name."""
     if isinstance(chosen, str) and (name := spelt(chosen, names)) is not None:
         return names.index(name)
     if isinstance(chosen, (int, np.integer)) and 0 <= chosen < len(names):

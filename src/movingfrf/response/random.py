@@ -203,7 +203,7 @@ def random_response(
     force_rms, crossing = statistics["contact_force_rms"], statistics["contact_force_crossing_rate"]
     lift_off_share, lift_off_rate = lift_off(steady.load, force_rms, crossing)
     found = [
-        *lifting_off(lift_off_share, lift_off_rate, exposure),
+        *lifting_off(lift_off_share, lift_off_rate, exposure, vehicle.standing),
         *surveyed.findings,
         *_at_the_end(lines, vehicle, spectrum),
     ]

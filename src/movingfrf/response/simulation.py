@@ -185,7 +185,9 @@ def driven(
         journey.time_step,
     )
     found = [
-        *find.contact_lost(turned(steady.load[:, None] + histories.force.values[0]), journey.time_step),
+        *find.contact_lost(
+            turned(steady.load[:, None] + histories.force.values[0]), journey.time_step, vehicle.standing
+        ),
         *surveyed.findings,
         *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
         *find.not_decayed("vehicle's motion", histories.motion.wrapped, histories.motion.values),

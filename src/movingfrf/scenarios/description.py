@@ -21,6 +21,7 @@ from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
 from movingfrf.roughness.straight import mean_slope, straight
 from movingfrf.scenarios.scenario import COUPLED_BY, NEWMARK, Drive, Passage, Scenario
+from movingfrf.scenarios.unusual import USUAL
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.modes import Mode, vehicle_modes
@@ -28,18 +29,6 @@ from movingfrf.vehicles.vehicle import Vehicle
 
 # A section: its heading and its lines of name and value.
 Section = tuple[str, list[tuple[str, str]]]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Unusual:
-    """What of a vehicle is worth a remark [conventions]."""
-
-    damping: float = 0.02  # share of critical damping below which a vibration takes long to settle
-    undamped: float = 1e-9  # share of critical damping that is rounding, of either sign
-    footprint: float = 1.0  # length beyond that of any tyre [m]
-
-
-UNUSUAL = Unusual()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,6 +87,7 @@ def described(scenario: Scenario) -> Description:
             found += [finding.message for finding in (*paths, *graded(*seen.slopes))]
         case Passage() as passage:
             sections.append(("Loads", _loads(passage)))
+    found = [*(finding.message for finding in scenario.case.unusual), *found]
     return Description(sections=[*sections, ("Run", _run(scenario.case))], remarks=found, refusal=refusal)
 
 
@@ -110,19 +100,16 @@ def _remarks_on_vehicle(vehicle: Vehicle, journey: Journey) -> list[str]:
             f"the vehicle vibrates at up to {fastest:.4g} Hz, but a record in steps of {journey.time_step:g} s "
             f"shows only what is below {nyquist:.4g} Hz"
         )
-    if frequencies.size and ratios.min() < UNUSUAL.damping:
+    if frequencies.size and ratios.min() < USUAL.damping:
         found.append(
             f"a vibration of the vehicle at {frequencies[ratios.argmin()]:.3g} Hz "
             + (
                 "is undamped: it does not settle"
-                if abs(ratios.min()) < UNUSUAL.undamped
+                if abs(ratios.min()) < USUAL.undamped
                 else f"has {100 * ratios.min():.2g} % of critical damping: it takes long to settle, and its size "
                 "depends on that number"
             )
         )
-    longest = max((contact.footprint for contact in vehicle.contacts), default=0.0)
-    if longest > UNUSUAL.footprint:
-        found.append(f"a footprint of {longest:g} m is longer than that of any tyre")
     return found
 
 
@@ -222,7 +209,7 @@ def _vibrations(vehicle: Vehicle, same: float = 1e-6) -> list[tuple[str, str]]:
 
 
 def _damping(ratio: float) -> str:
-    return "undamped" if abs(ratio) < UNUSUAL.undamped else f"{100 * ratio:.1f} % damping"
+    return "undamped" if abs(ratio) < USUAL.undamped else f"{100 * ratio:.1f} % damping"
 
 
 def _alike(group: Sequence[Mode]) -> str:

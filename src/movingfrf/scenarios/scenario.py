@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import Fault, nearest, shown, spelt
+from movingfrf._basics.checks import Fault, Finding, nearest, shown, spelt, warned
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.values import Value, brief
 from movingfrf._basics.wording import enumerated
@@ -18,9 +18,11 @@ from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.response.moving_loads import Forces, carried
 from movingfrf.response.simulation import driven
 from movingfrf.response.system import Prescribed
+from movingfrf.results.findings import with_more
 from movingfrf.roughness.road import Road
 from movingfrf.scenarios.forces import Loads
 from movingfrf.scenarios.stepped import EXCHANGED, Division, coupled, elements, loaded, require_endless
+from movingfrf.scenarios.unusual import unusual
 from movingfrf.stepping.exchange import SOLVED
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.journey import Journey
@@ -86,6 +88,11 @@ class Drive(Value):
             ("road", brief(self.road.description)),
             ("journey", f"{self.journey.duration:g} s at {self.journey.speed_in_words}"),
         ]
+
+    @property
+    def unusual(self) -> list[Finding]:
+        """What of it lies outside what is usual."""
+        return unusual(self.guideway, self.journey, vehicle=self.vehicle, profile=self.road.profile)
 
     @property
     def places(self) -> FloatArray:
@@ -162,6 +169,11 @@ class Passage(Value):
             ("observed", f"at {enumerated([f'{place:g}' for place in self.loads.observe], 8)} m"),
             ("journey", f"{self.journey.duration:g} s at {self.journey.speed_in_words}"),
         ]
+
+    @property
+    def unusual(self) -> list[Finding]:
+        """What of it lies outside what is usual."""
+        return unusual(self.guideway, self.journey, forces=self.forces)
 
     @property
     def places(self) -> FloatArray:
@@ -290,7 +302,9 @@ class Scenario(Value):
         SolveError
             If the case has no meaningful answer.
         """
-        return self.case.run(progress, method).assign_attrs(scenario=self.text, **self.journey.given_speed)
+        result = self.case.run(progress, method)
+        findings = with_more(result.attrs["findings"], warned(self.case.unusual))
+        return result.assign_attrs(scenario=self.text, findings=findings, **self.journey.given_speed)
 
 
 def shortened(scenario: Scenario, duration: float) -> Scenario:

@@ -377,7 +377,7 @@ def prepared_journey(
             iterations=trace.iterations,
             findings=[
                 *steady.findings,
-                *find.contact_lost(force + steady.load, journey.time_step),
+                *find.contact_lost(force + steady.load, journey.time_step, vehicle.standing),
                 *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
                 *find.graded(*seen.slopes),
             ],

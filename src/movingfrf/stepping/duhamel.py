@@ -205,7 +205,7 @@ def convolved(
         **seen.settings,
         critical_speed=road.critical_speed,
         findings=[
-            *find.contact_lost(force + load, time_step),
+            *find.contact_lost(force + load, time_step, vehicle.standing),
             *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
             *find.graded(*seen.slopes),
             *road.findings,

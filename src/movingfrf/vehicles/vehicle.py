@@ -14,7 +14,7 @@ from movingfrf._basics.checks import Checks, checking
 from movingfrf._basics.door import mistaken
 from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf._basics.values import Value
-from movingfrf._basics.wording import enumerated
+from movingfrf._basics.wording import Standing, enumerated
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.dynamics import Dynamics, Quadratic, held, parts, split
 
@@ -147,6 +147,21 @@ class Vehicle(Remembering, Value):
             "footprints": np.array([contact.footprint for contact in self.contacts]),
             "cams": np.array([contact.cams for contact in self.contacts]),
         }
+
+    @property
+    def on_rails(self) -> bool:
+        """Whether every contact is as stiff as a wheel on a rail; a rigid one has to be called a wheelset."""
+        # Between the stiffest tyres and the softest wheels on rails [2e7 to 3e8 N/m].
+        least = 1e8
+        return all(
+            contact.stiffness > least and ("wheelset" in contact.name or not contact.rigid)
+            for contact in self.contacts
+        )
+
+    @property
+    def standing(self) -> Standing:
+        """What messages say of the contacts."""
+        return Standing([contact.name for contact in self.contacts], "rail" if self.on_rails else "road")
 
     @property
     def coordinates(self) -> dict[str, ArrayLike]:
