@@ -230,7 +230,7 @@ def test_a_full_car_and_a_seed_for_each_path():
         ('[0, "one"]', "roughness.seed", "must be a whole number"),
         ("[[0, 1]]", "roughness.seed", "must be a whole number"),
         ("true", "roughness.seed", "must be a whole number"),
-        ("[4]", "roughness:", "a contact follows path 1, but the profile has 1 path(s)"),
+        ("[4]", "roughness:", "a contact follows path 1, but the profile has 1 path"),
     ],
 )
 def test_impossible_seeds(seeds, name, message):

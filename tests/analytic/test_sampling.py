@@ -300,7 +300,7 @@ def test_a_part_of_a_record_is_measured_as_that_part():
         np.testing.assert_allclose(*of_both, rtol=2e-2)
 
 
-@pytest.mark.filterwarnings("ignore:contact", "ignore:the road")
+@pytest.mark.filterwarnings("ignore:contact", "ignore:the profile")
 def test_slopes_that_stay_in_are_said():
     """On a short profile, without a blend, and where a road sets out at another slope than its grade."""
     road = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 4.0)), length=205.0, seed=1, start=-5.0)

@@ -56,7 +56,10 @@ def test_expected_peak_of_a_longer_journey():
 
 def test_contact_that_would_be_lost():
     """Gauss: share below zero; Rice: how often. On a good road neither is worth a word."""
-    with pytest.warns(mf.ValidityWarning, match="contact 0 would lift off the road about"):
+    with pytest.warns(
+        mf.ValidityWarning,
+        match=r"contact 0 \(wheel\) would lift off the road about",
+    ):
         rough = respond("quarter_car", spectrum=replace(GROUND, roughness=1e-3), speed=25.0, coherence=None)
     (finding,) = json.loads(rough.attrs["findings"])
     assert finding["code"] == "contact_lost"

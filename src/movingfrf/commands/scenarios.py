@@ -108,7 +108,8 @@ def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Param
             console.print(one, style="bold")
             console.print(f"  {entry.summary}", soft_wrap=True)
             console.print(
-                f"  {len(made.dof_names)} degrees of freedom, {count(len(made.contacts), 'contact')}, "
+                f"  {count(len(made.dof_names), 'degree of freedom', 'degrees of freedom')}, "
+                f"{count(len(made.contacts), 'contact')}, "
                 f"{mass / 1e3:.4g} t, {made.natural_frequencies.min():.3g} to {made.natural_frequencies.max():.3g} "
                 f"Hz, damped by {100 * made.damping_ratios.min():.2g} % or more",
                 soft_wrap=True,

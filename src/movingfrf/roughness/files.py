@@ -10,6 +10,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ParameterError, checking, option, shown, spelt
+from movingfrf._basics.wording import count
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
@@ -289,9 +290,11 @@ def _cropped_rims(raw: RawProfile, *, sides: bool) -> RawProfile:
         raise ValueError("has no station with an elevation on every path")
     first, last = int(kept[0]), int(kept[-1]) + 1
     if (left, right) != (0, missing.shape[1]):
-        steps.append(f"left out {left} long sections at the left rim and {missing.shape[1] - right} at the right")
+        steps.append(
+            f"left out {count(left, 'long section')} at the left rim and {missing.shape[1] - right} at the right"
+        )
     if (first, last) != (0, len(missing)):
-        steps.append(f"left out {first} stations at the beginning and {len(missing) - last} at the end")
+        steps.append(f"left out {count(first, 'station')} at the beginning and {len(missing) - last} at the end")
     place = raw.place
     return raw._replace(
         stations=raw.stations[first:last],
@@ -324,10 +327,10 @@ def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
     first, longest = gaps[0], max(gaps, key=lambda gap: gap.length)
     if repair_gaps is None:
         raise ValueError(
-            f"{raw.place(first.first)}: no elevation {_at(raw, first)}; in all {missing} elevations are "
-            f"missing in {len(gaps)} gaps, the longest {_long(longest)} {_at(raw, longest)}. "
-            f"{option('repair_gaps')} fills gaps up to a length, {option('crop_rims')} leaves out the rims of a "
-            "grid"
+            f"{raw.place(first.first)}: no elevation {_at(raw, first)}; in all "
+            f"{count(missing, 'elevation is', 'elevations are')} missing in {count(len(gaps), 'gap')}, the longest "
+            f"{_long(longest)} {_at(raw, longest)}. {option('repair_gaps')} fills gaps up to a length, "
+            f"{option('crop_rims')} leaves out the rims of a grid"
         )
     if longest.length > repair_gaps:
         raise ValueError(
@@ -340,7 +343,8 @@ def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
         there = ~np.isnan(column)
         column[~there] = np.interp(raw.stations[~there], raw.stations[there], column[there])
     done = (
-        f"filled {missing} missing elevations in {len(gaps)} gaps by straight lines, the longest {_long(longest)} "
+        f"filled {count(missing, 'missing elevation')} in {count(len(gaps), 'gap')} by straight lines, the longest "
+        f"{_long(longest)} "
         f"{_at(raw, longest)}"
     )
     return raw._replace(elevations=elevations, steps=(*raw.steps, done))
@@ -386,5 +390,5 @@ def _sentence(name: str, profile: Profile, raw: RawProfile) -> str:
     spacing = f"{step:.4g} m" if step is not None else f"{steps.min():.4g}–{steps.max():.4g} m"
     return (
         f"{name}: {stations.size} stations from {stations[0]:g} m to {stations[-1]:g} m every {spacing}, "
-        f"{profile.paths} path(s), elevation {elevation.min():g} to {elevation.max():g} m, {raw.understood}"
+        f"{count(profile.paths, 'path')}, elevation {elevation.min():g} to {elevation.max():g} m, {raw.understood}"
     )

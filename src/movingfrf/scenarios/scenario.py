@@ -13,7 +13,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Fault, Finding, nearest, shown, spelt, warned
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.values import Value, brief
-from movingfrf._basics.wording import enumerated
+from movingfrf._basics.wording import count, enumerated
 from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.response.moving_loads import Forces, carried
 from movingfrf.response.simulation import driven
@@ -45,9 +45,8 @@ class ScenarioError(ValueError):
 
     def __init__(self, source: str, faults: Sequence[Fault]) -> None:
         self.faults = tuple(faults)
-        count = "1 fault" if len(self.faults) == 1 else f"{len(self.faults)} faults"
         lines = [f"  {fault.name} {fault.message}".rstrip() for fault in self.faults]
-        super().__init__("\n".join([f"{source}: {count}", *lines]))
+        super().__init__("\n".join([f"{source}: {count(len(self.faults), 'fault')}", *lines]))
 
 
 # What computes a case unless something else is asked for; the methods that step a drive, and how each finds contact

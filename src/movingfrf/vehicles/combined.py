@@ -10,6 +10,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike
 
+from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf.vehicles.vehicle import Vehicle, check_vehicle
@@ -118,7 +119,7 @@ def train(car: Vehicle, count: int, *, spacing: float) -> Vehicle:
         count = check.whole("count", count, least=1)
         spacing = check.positive("spacing", spacing, "m")
     # Two dozen square matrices of all degrees of freedom, while they are joined and checked.
-    require_memory(200.0 * (count * len(car.dof_names)) ** 2, f"a train of {count} cars")
+    require_memory(200.0 * (count * len(car.dof_names)) ** 2, f"a train of {wording.count(count, 'car')}")
     return convoy([car] * count, spacing=spacing)
 
 
