@@ -215,7 +215,7 @@ def finite_plate(
             last=last,
             poisson=poisson,
             transverse=transverse,
-            ends=ends,
+            ends=both,
             absorbing=length,
             band=band,
             travels=travels,

@@ -220,7 +220,7 @@ def finite_track(
             track=track,
             first=first,
             last=last,
-            ends=ends,
+            ends=both,
             absorbing=length,
             band=band,
             travels=travels,
