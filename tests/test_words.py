@@ -9,6 +9,7 @@ import struct
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -47,8 +48,6 @@ def rolling(vehicle, amplitude, **journey):
 
 def hertzian_coach():
     coach = mf.catalogue("velaro_coach")
-    from dataclasses import replace
-
     return replace(coach, contacts=[replace(contact, stiffness=2.4e9) for contact in coach.contacts])
 
 
@@ -67,6 +66,7 @@ def test_a_truck_lifts_off_the_road():
     assert finding["message"].startswith("contact 0 (wheel) would lift off the road during ")
 
 
+@pytest.mark.filterwarnings("ignore:.*of the variance of a contact force")
 def test_a_random_road_says_it_once_too():
     road = mf.IsoRoad(0.02, band=(0.02, 2.0))
     with pytest.warns(
@@ -131,7 +131,7 @@ def everything_in_order():
                 yield path.name, text
 
 
-@pytest.mark.parametrize(("name", "text"), everything_in_order())
+@pytest.mark.parametrize(("name", "text"), [*everything_in_order()])
 def test_nothing_is_unusual_about_what_is_in_order(name, text):
     assert said_of(text) == []
 
@@ -143,7 +143,7 @@ def test_nothing_is_unusual_about_the_catalogue(name):
 
 
 ABSURD = [
-    ("speed = 10.0", "speed = 720.0", "4.055 times the critical one of 177.5 m/s, usual is less than 4 times"),
+    ("speed = 10.0", "speed = 720.0", "4.06 times the critical one of 177.5 m/s, usual is less than 4 times"),
     ("speed = 10.0", "speed = 101.0", "the speed is 101 m/s, usual is 0.1 to 100 m/s: it is 363.6 km/h"),
     ("speed = 10.0", "speed = 0.01", "the speed is 0.01 m/s"),
     ("time_step = 0.001", "time_step = 1.0", "the step in time is 1 s, usual is 1 × 10⁻⁷ to 0.05 s"),
@@ -152,7 +152,7 @@ ABSURD = [
     ("axles = [2.21613, -2.05387]", "axles = [110.0, -110.0]", "from its first contact to its last is 220 m"),
     ("axles = [2.21613, -2.05387]", "axles = [0.0022, -0.0021]", "to its last is 0.0043 m, usual is 0.2 to 60 m"),
     ("stiffness = 8.0e6", "stiffness = 8.0e3", "the stiffness of the foundation is 8000 N/m²"),
-    ("bending_stiffness = 1.573e7", "bending_stiffness = 1.573e4", "the bending stiffness of the beam is 15730 N m²"),
+    ("bending_stiffness = 1.573e7", "bending_stiffness = 1.573e4", "bending stiffness of the beam is 15730 N m²"),
     ("mass = 711.9", "mass = 0.7119", "the mass of the beam is 0.7119 kg/m, usual is 1 to 100000 kg/m"),
     ("damping = 3.0e4", "damping = 3.0e7", "the damping of the foundation, over the critical one, is 198.8"),
     ("tyre_stiffness = [3.74e6, 4.6e6]", "tyre_stiffness = [3740.0, 4600.0]", "compresses the spring of contact 0"),
@@ -185,7 +185,7 @@ def test_more_that_is_absurd():
         bogie_spacing=19.0, axle_spacing=2.56,
     )  # fmt: skip
     for given, words in (
-        ({"vehicle": light}, "the smallest static load, that of contact 0 (wheelset 1), is 109.1 N"),
+        ({"vehicle": light}, "the smallest static load, that of contact 0 (wheelset 1), is 108.9 N"),
         ({"profile": mf.Profile(np.arange(9.0), 3.0 * (np.arange(9.0) % 2))}, "are elevations in m?"),
         (
             {"forces": np.array([[5.1e6]])},
@@ -207,6 +207,7 @@ def test_more_that_is_absurd():
     assert unusual(wire, journey) == []
 
 
+@pytest.mark.filterwarnings("ignore:the guideway counts as rigid")
 def test_check_and_run_both_say_it():
     scenario = parse_scenario(
         TRUCK.replace("speed = 10.0", "speed = 101.0").replace("duration = 24.0", "duration = 0.2")
@@ -245,11 +246,9 @@ def test_a_speed_in_the_other_unit_is_rounded(speed, in_kmh, words):
 
 def test_one_of_a_thing():
     assert (count(1, "path"), count(2, "path"), count(0, "gap")) == ("1 path", "2 paths", "0 gaps")
+    short, car = mf.Profile(np.arange(50.0), np.zeros((50, 1))), mf.on_paths(mf.catalogue("golden_car"), [1])
     with pytest.raises(ValueError, match="but the profile has 1 path, counted from 0"):
-        short = mf.Profile(np.arange(50.0), np.zeros((50, 1)))
-        mf.simulate(
-            mf.RigidGuideway(), mf.on_paths(mf.catalogue("golden_car"), [1]), short, speed=1.0, duration=9.0
-        )
+        mf.simulate(mf.RigidGuideway(), car, short, speed=1.0, duration=9.0)
 
 
 def test_no_message_counts_one_in_the_plural():
@@ -271,7 +270,8 @@ def test_sentences_break_between_words():
     assert all(len(line) <= 40 or "/longer/" in line for line in lines)
     assert "a/path/that/is/longer/than/the/line/it/stands/in" in " ".join(lines)
     for left, right in pairwise(lines):
-        assert not (left.endswith("4300") or right.lstrip().startswith("s/m"))
+        assert not left.endswith("4300")
+        assert not right.lstrip().startswith("s/m")
     assert _wrapped("", 40) == ""
 
 
@@ -310,6 +310,7 @@ def on_terminal(arguments, folder, columns=80):
     return [line.rstrip("\r").rpartition("\r")[2] for line in plain.split("\n")]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
 def test_nothing_is_wider_than_a_terminal(tmp_path):
     (tmp_path / "truck.toml").write_text(TRUCK.replace("duration = 24.0", "duration = 0.5"), encoding="utf-8")
