@@ -55,7 +55,7 @@ def test_half_truck_example():
 
 
 @pytest.mark.skipif(not PAVED_ROAD.exists(), reason=f"the surveyed profile {PAVED_ROAD.name} is not there")
-@pytest.mark.filterwarnings("ignore:the road begins with a grade of -0.51 %")
+@pytest.mark.filterwarnings("ignore:the profile begins with a grade of -0.51 %")
 def test_paved_road_example():
     told = "\n".join(loaded("paved_road").told(ROOT / "examples" / "paved_road.toml"))
     assert "2177 stations from 478 m to 1022 m every 0.25 m" in told

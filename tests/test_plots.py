@@ -141,8 +141,8 @@ def test_many_curves_are_thinned_to_the_first_the_last_and_some_between():
         plots.deflection_spectra,
         plots.roughness,
         plots.roughness_spectrum,
-        lambda result, ax: plots.accelerations(result, 0, ax),
-        lambda result, ax: plots.acceleration_spectrum(result, 1, ax),
+        lambda result, ax: plots.accelerations(result, ax, dof=0),
+        lambda result, ax: plots.acceleration_spectrum(result, ax, dof="wheel"),
     ],
 )
 def test_every_axis_names_quantity_and_unit(result, draw):

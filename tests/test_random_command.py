@@ -118,7 +118,7 @@ def test_report():
     outside = re.sub(r"<svg[^>]*>|xmlns(:\w+)?=\"[^\"]*\"", "", page)
     assert not re.search(r"(src|href)=\"(?!#)", outside)
     assert page.count("<svg") == 5
-    assert "Contact 0 would lift off the road about" in page
+    assert "Contacts 0 (front left) to 3 (rear right) would lift off the road up to" in page
     for name in ("static", "crossing rate", "dynamic load coefficient", "road stress factor", "weighted rms (Wk)"):
         assert name in page
     static = next(m for m in found if m.quantity == "contact 0 force" and m.name == "static")

@@ -93,7 +93,7 @@ def test_columns_by_name_and_by_number(tmp_path):
         ("0,1\n1,2\n2\n3,4\n", "line 3: expected 2 columns as before, got 1"),
         ("0,1\n1,2\n2,1,7\n3,4\n", "line 3: expected 2 columns as before, got 3"),
         ("# c\n0,1\n\n1,2\n1,3\n2,4\n", "line 5: distance must increase, got 1 m followed by 1 m"),
-        ("0,1\n1,2\n2,nan\n3,4\n", "line 3: no elevation at 2 m; in all 1 elevations are missing in 1 gaps"),
+        ("0,1\n1,2\n2,nan\n3,4\n", "line 3: no elevation at 2 m; in all 1 elevation is missing in 1 gap"),
         ("0,1\n1,2\n2,inf\n3,4\n", "line 3: elevation must be finite"),
         ("0,1\n1,2\nnan,3\n3,4\n", "line 3: there is no station"),
         ("0,1\n1,2\n2,3\n", "at least 4 stations"),
@@ -165,7 +165,7 @@ def test_a_gap_at_an_end_is_never_filled(tmp_path):
         mf.read_profile(file, repair_gaps=100.0)
     profile, _ = mf.read_profile(file, crop_rims=True, repair_gaps=3.0)
     assert profile.stations[0] == 1.0
-    assert profile.steps[0] == "left out 1 stations at the beginning and 0 at the end"
+    assert profile.steps[0] == "left out 1 station at the beginning and 0 at the end"
 
 
 # Round trips: the precision of each format. A float keeps 24 bits; the text forms of OpenCRG keep 18 decimals (then

@@ -270,7 +270,7 @@ def test_a_track_that_stands_still_for_a_while(tmp_path):
     profile, understood = mf.read_profile(written(tmp_path, "track.gpx", points(*places)))
     assert profile.elevation.tolist() == [300.0, 301.0, 302.0, 299.0]
     assert np.diff(profile.stations) == pytest.approx(111.2, rel=1e-3)
-    assert profile.steps == ("1 points that do not lead on left out",)
+    assert profile.steps == ("1 point that does not lead on left out",)
     assert profile.source == "track.gpx (A road)"
     assert "ellipsoid of WGS 84" in understood
 

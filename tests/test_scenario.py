@@ -230,7 +230,7 @@ def test_a_full_car_and_a_seed_for_each_path():
         ('[0, "one"]', "roughness.seed", "must be a whole number"),
         ("[[0, 1]]", "roughness.seed", "must be a whole number"),
         ("true", "roughness.seed", "must be a whole number"),
-        ("[4]", "roughness:", "a contact follows path 1, but the profile has 1 path(s)"),
+        ("[4]", "roughness:", "a contact follows path 1, but the profile has 1 path"),
     ],
 )
 def test_impossible_seeds(seeds, name, message):
@@ -420,6 +420,8 @@ def test_keys_say_what_the_signature_says():
     assert keys["sides"].type == tuple[float, float]  # None is the default, no value
     assert keys["hitches"].default == ()
     assert [key.name for kind in DRIVE["run"].kinds.values() for key in kind.keys if not key.needed] == [
+        "speed",
+        "speed_kmh",
         "start",
         "time_step",
         "truncation",

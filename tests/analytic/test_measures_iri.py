@@ -252,7 +252,7 @@ def test_average_of_a_real_road_segment_by_segment():
 
 # The kinks of straight pieces hold high frequencies; the car does not feel them.
 @on_real_roads
-@pytest.mark.filterwarnings("ignore:the road begins with a grade", "ignore:the roughness index is")
+@pytest.mark.filterwarnings("ignore:the profile begins with a grade", "ignore:the roughness index is")
 @pytest.mark.parametrize(("name", "footprint", "segment"), [("utia", 0.0, 100.0), ("IRI_737b", 0.25, 20.0)])
 def test_real_roads_by_the_coupled_response(name, footprint, segment):
     """The golden car driven by `simulate` on a rigid road, in the frequency domain, its tyre averaging over 250 mm.

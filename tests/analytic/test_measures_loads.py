@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -147,8 +148,8 @@ def test_an_axle_that_hangs_between_others():
     ):
         assert result.static_load.values == pytest.approx(loads, rel=1e-6)
         assert np.isinf(coefficients).tolist() == [False, True, False]
-        found = [(finding["code"], finding["message"][:9]) for finding in json.loads(result.attrs["findings"])]
-        assert ("contact_lost", "contact 1") in found
+        (message,) = (f["message"] for f in json.loads(result.attrs["findings"]) if f["code"] == "contact_lost")
+        assert re.match(r"contacts? (1|0 to 2) would lift off", message)
     found = {(m.quantity, m.name): m.value for m in assess(history)}
     listed = {(m.quantity, m.name): m.value for m in random_measures(spectral)}
     assert (

@@ -159,7 +159,7 @@ def test_past_the_end_of_a_profile_a_footprint_is_a_guess():
     assert 1 / 3 < ratio < 3
 
 
-@pytest.mark.filterwarnings("ignore:the road begins with a mean slope")
+@pytest.mark.filterwarnings("ignore:the profile begins with a mean slope")
 def test_a_road_that_begins_with_a_kink_under_a_dashpot():
     """The force jumps; no step resolves that, and the finding says how much a finer one still changes."""
     ramp = mf.Profile(np.linspace(-5.0, 60.0, 261), 0.01 * np.linspace(-5.0, 60.0, 261))
@@ -300,7 +300,7 @@ def test_a_part_of_a_record_is_measured_as_that_part():
         np.testing.assert_allclose(*of_both, rtol=2e-2)
 
 
-@pytest.mark.filterwarnings("ignore:contact", "ignore:the road")
+@pytest.mark.filterwarnings("ignore:contact", "ignore:the profile")
 def test_slopes_that_stay_in_are_said():
     """On a short profile, without a blend, and where a road sets out at another slope than its grade."""
     road = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 4.0)), length=205.0, seed=1, start=-5.0)

@@ -135,7 +135,7 @@ FAULTS = [
         "crossings by the fourth moment", "response/random.py", "_rate(second, variance)", "_rate(fourth, second)"
     ),
     Fault("lift-offs too rare", "response/statistics.py", "(crossing) * np.exp(-0.5", "(crossing) * np.exp(-1.0"),
-    Fault("lift-offs unseen", "response/statistics.py", "if often > most_times or part", "if False and part"),
+    Fault("lift-offs unseen", "response/statistics.py", "(often > most_times) |", "(often < 0) &"),
     Fault("end of the band unseen", "response/random.py", "if share <= TOLERANCES.at_the_end:", "if share >= 0:"),
     Fault("weighting of amplitudes", "response/random.py", "lines.frequency)) ** 2", "lines.frequency))"),
     Fault(

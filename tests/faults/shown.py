@@ -25,6 +25,37 @@ FAULTS = [
         "spline of unordered places", "_basics/spline.py", "(flat[1:] >= flat[:-1]).all()", "flat[-1] >= flat[0]"
     ),
     Fault("area that begins anew at every knot", "_basics/spline.py", "raised[-1, ..., 1:] = ", "_ = "),
+    # Values in the hand, doors, words.
+    Fault(
+        "shape that does not count",
+        "_basics/values.py",
+        "return value.shape, blake2b(numbers",
+        "return 0, blake2b(numbers",
+    ),
+    Fault("two zeros", "_basics/values.py", '(0j if value.dtype.kind == "c" else 0.0)', "-0.0"),
+    Fault(
+        "nan unlike nan",
+        "_basics/values.py",
+        "numbers[np.isnan(numbers)] = np.nan",
+        "numbers[np.isnan(numbers)] = id(value)",
+    ),
+    Fault("names that run as HTML", "_basics/values.py", "{escape(words)}</td>", "{words}</td>"),
+    Fault("nothing to do instead", "_basics/door.py", 'return hint and f"; {hint}"', 'return ""'),
+    Fault("no limit to point to", "_basics/door.py", "callable(value) or hasattr", "False and hasattr"),
+    Fault("wk unknown", "_basics/checks.py", "same.get(word.casefold()", "same.get(word"),
+    Fault("speed in the wrong unit", "scenarios/kinds.py", '"km/h") / 3.6', '"km/h") / 3.5'),
+    Fault(
+        "two speeds at once", "scenarios/kinds.py", "if speed is not None and speed_kmh is not None:", "if False:"
+    ),
+    Fault("digits that nobody gave", "_basics/wording.py", "other[0]:.4g}", "other[0]:.9g}"),
+    Fault("rails called road", "vehicles/vehicle.py", '"rail" if self.on_rails else "road"', '"road"'),
+    Fault("neighbours counted singly", "_basics/wording.py", "numbers[rank] - rank)", "numbers[rank])"),
+    Fault("tonnes for kilograms", "scenarios/unusual.py", "if least <= value <= most:", "if True:"),
+    Fault("convoy called long", "scenarios/unusual.py", "np.ptp(places[part.contacts])", "np.ptp(places)"),
+    Fault("absurd in silence", "scenarios/scenario.py", "warned(self.case.unusual))", "[])"),
+    Fault("sentences broken anywhere", "commands/console.py", "break_long_words=False", "break_long_words=True"),
+    Fault("number without its unit", "commands/console.py", '"\\u00a0", line)', '" ", line)'),
+    Fault("lists that may be empty", "commands/root.py", "negative_iterable=()", 'negative_iterable=("empty",)'),
     # Paths, distributions, shapes.
     Fault(
         "shape that starts at zero",

@@ -56,7 +56,10 @@ def test_expected_peak_of_a_longer_journey():
 
 def test_contact_that_would_be_lost():
     """Gauss: share below zero; Rice: how often. On a good road neither is worth a word."""
-    with pytest.warns(mf.ValidityWarning, match="contact 0 would lift off the road about"):
+    with pytest.warns(
+        mf.ValidityWarning,
+        match=r"contact 0 \(wheel\) would lift off the road about",
+    ):
         rough = respond("quarter_car", spectrum=replace(GROUND, roughness=1e-3), speed=25.0, coherence=None)
     (finding,) = json.loads(rough.attrs["findings"])
     assert finding["code"] == "contact_lost"
@@ -241,7 +244,8 @@ def test_what_is_no_vehicle_and_no_spectrum():
     with pytest.raises(mf.ParameterError, match="vehicle must be a Vehicle, got None"):
         mf.transfer(ROAD, None, speed=1.0, frequency=[1.0])
     with pytest.raises(
-        mf.ParameterError, match="spectrum must be a roughness spectrum, got the class IsoRoad itself"
+        mf.ParameterError,
+        match="spectrum must be a roughness spectrum, as IsoRoad is, got the class IsoRoad itself",
     ):
         respond(spectrum=mf.IsoRoad, coherence=None)
 
@@ -269,7 +273,8 @@ def test_what_is_refused():
     with pytest.raises(mf.ParameterError, match="coherence must not be negative"):
         respond("full_truck", coherence=-0.5)
     with pytest.raises(
-        mf.ParameterError, match="must be a roughness spectrum, as IsoRoad is, got an object of Profile"
+        mf.ParameterError,
+        match="must be a roughness spectrum, as IsoRoad is, got a Profile; `simulate` takes a profile",
     ):
         respond(spectrum=mf.bump(height=0.1, width=1.0, at=1.0, length=9.0))
     with pytest.raises(mf.ParameterError, match="exposure must be positive"):

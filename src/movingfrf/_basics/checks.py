@@ -17,6 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.door import beyond_limits, instead_of
+from movingfrf._basics.door import shown as shown
 
 Kind = TypeVar("Kind")
 
@@ -82,19 +84,23 @@ def warned(found: Iterable[Finding]) -> tuple[Finding, ...]:
     return found
 
 
-def shown(value: object) -> str:
-    """Write a refused value, shortened where it is long."""
-    try:
-        text = repr(value)
-    except ValueError:  # an integer of thousands of digits
-        text = "a number of thousands of digits"
-    return text if len(text) <= 60 else f"{text[:57]}..."
-
-
 def nearest(word: str, known: Iterable[str]) -> str:
     """Suggest the nearest spelling, in brackets; nothing if there is none."""
     close = difflib.get_close_matches(word, list(known), n=1)
     return f" (did you mean {close[0]!r}?)" if close else ""
+
+
+def spelt(word: object, known: Iterable[str]) -> str | None:
+    """Find a known word whatever the case of its letters, and whether hyphen, underscore or blank joins its parts.
+
+    Examples
+    --------
+    >>> spelt("wk", ["Wk", "Wd"]), spelt("Moving_FRF", ["moving-frf"]), spelt("x", ["y"])
+    ('Wk', 'moving-frf', None)
+    """
+    plainly = str.maketrans("-_", "  ")
+    same = {one.casefold().translate(plainly): one for one in known}
+    return same.get(word.casefold().translate(plainly)) if isinstance(word, str) else None
 
 
 def with_unit(number: float, unit: str) -> str:
@@ -142,7 +148,8 @@ class Checks:
         """Demand a real, finite number of credible magnitude."""
         value = plain(value)
         if not isinstance(value, Real) or isinstance(value, bool):
-            self.refuse(name, f"must be {in_brackets(condition, unit)}, got {shown(value)}")
+            wanted = in_brackets(condition, unit)
+            self.refuse(name, f"must be {wanted}, got {shown(value)}{beyond_limits(name, value)}")
             return float("nan")
         try:
             number = float(value)
@@ -199,6 +206,15 @@ class Checks:
         self.refuse(name, f"must be a text, got {shown(value)}")
         return ""
 
+    def choice(self, name: str, value: Any, known: Iterable[str]) -> str:
+        """Demand one of some words; returns it as it is known."""
+        known = list(known)
+        if (found := spelt(value, known)) is not None:
+            return self.keep(name, found)
+        hint = nearest(value, known) if isinstance(value, str) else ""
+        self.refuse(name, f"must be one of {', '.join(known)}, got {shown(value)}{hint}")
+        return known[0]
+
     def array(self, name: str, value: ArrayLike, unit: str, shape: tuple[int | None, ...] | None) -> FloatArray:
         """Demand finite numbers in an array of the given shape (None: any, of a length too); returns a frozen copy.
 
@@ -207,7 +223,8 @@ class Checks:
         try:
             array = real_numbers(value)
         except (TypeError, ValueError, OverflowError, RecursionError):
-            self.refuse(name, f"must be {in_brackets('an array of numbers', unit)}, got {shown(value)}")
+            wanted = in_brackets("an array of numbers", unit)
+            self.refuse(name, f"must be {wanted}, got {shown(value)}{instead_of('numbers', value)}")
             return np.full([n or 1 for n in shape or ()], np.nan)
         shape = array.shape if shape is None else shape
         wanted = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
@@ -253,7 +270,8 @@ class Checks:
         try:
             first, second = value
         except (TypeError, ValueError):
-            self.refuse(name, f"must be {in_brackets('two numbers', unit)}, got {shown(value)}")
+            wanted = in_brackets("two numbers", unit)
+            self.refuse(name, f"must be {wanted}, got {shown(value)}{beyond_limits(name, value)}")
             return (float("nan"), float("nan"))
         check = self.finite if signed else self.positive if positive else self.not_negative
         check = self.positive_or_infinite if infinite else check

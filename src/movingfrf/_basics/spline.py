@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dgtsv
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.values import Value
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Piecewise:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Piecewise(Value):
     """Polynomials from knot to knot, the first and the last of them going on beyond.
 
     Parameters

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 
@@ -52,6 +54,30 @@ def plain(value: float) -> str:
     return f"{value:.10g}".replace("-", "−")
 
 
+def in_both_units(speed: float, *, in_kmh: bool = False) -> tuple[str, str]:
+    """Write a speed in m/s and in km/h, as it was given first and the other as one writes it.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [m/s].
+    in_kmh : bool
+        Whether it was given in km/h.
+
+    Returns
+    -------
+    tuple of str
+        Two numbers with their units.
+
+    Examples
+    --------
+    >>> in_both_units(69.4444), in_both_units(250 / 3.6, in_kmh=True)
+    (('69.4444 m/s', '250 km/h'), ('250 km/h', '69.44 m/s'))
+    """
+    given, other = ((3.6 * speed, "km/h"), (speed, "m/s"))[:: 1 if in_kmh else -1]
+    return f"{plain(given[0])} {given[1]}", f"{plain(float(f'{other[0]:.4g}'))} {other[1]}"
+
+
 def is_never(value: float, units: str) -> bool:
     """Tell whether a rate or a share is too small for its digits to mean anything."""
     return units in ("1/s", "1") and 0 < value < NEVER
@@ -71,6 +97,41 @@ def named_paths(numbers: Sequence[int], most: int = 6) -> str:
         words = [*words[: most - 1], f"{len(words) - most + 1} more"]
     *first, last = words
     return f"paths {', '.join(first)} and {last}"
+
+
+class Standing(NamedTuple):
+    """What messages say of a vehicle's contacts: their names, and what they stand on."""
+
+    names: Sequence[str]
+    ground: str = "road"  # or "rail"
+
+    def listed(self, numbers: Sequence[int], most: int = 4) -> str:
+        """Name some contacts, neighbours by the first and the last, at most so many groups.
+
+        Examples
+        --------
+        >>> Standing(["front", "rear"]).listed([1])
+        'contact 1 (rear)'
+        >>> Standing([""] * 64).listed([0, 2, *range(9, 64)])
+        'contacts 0, 2 and 9 to 63'
+        """
+        words = [f"{number} ({self.names[number]})" if self.names[number] else f"{number}" for number in numbers]
+        if len(words) == 1:
+            return f"contact {words[0]}"
+        # Neighbours have one difference between number and rank.
+        runs = [list(run) for _, run in groupby(range(len(words)), lambda rank: numbers[rank] - rank)]
+        groups = [words[run[0]] + (f" to {words[run[-1]]}" if run[1:] else "") for run in runs]
+        if len(groups) > most:
+            groups = [*groups[: most - 1], f"{sum(map(len, runs[most - 1 :]))} more"]
+        *first, last = groups
+        return f"contacts {', '.join(first)} and {last}" if first else f"contacts {last}"
+
+
+def enumerated(words: Sequence[str], most: int = 14) -> str:
+    """Words with commas between them, at most so many: the middle ones are left out."""
+    if len(words) <= most:
+        return ", ".join(words)
+    return f"{', '.join(words[: most - 2])}, …, {words[-1]} ({len(words)} in all)"
 
 
 def some_of(total: int, most: int, what: str) -> str:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import io
 import json
 import math
+import re
 import sys
 import textwrap
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -38,9 +39,34 @@ class Layout:
 LAYOUT = Layout()
 
 
+class _Worded(Console):
+    """Console that breaks sentences between words; what is longer than a line, as a path may be, stays whole."""
+
+    def print(self, *objects: Any, **how: Any) -> None:
+        """Print as rich does, but for the sentences that are to be wrapped softly."""
+        if how.get("soft_wrap") and self.is_terminal:
+            objects = tuple(_wrapped(one, self.width) if isinstance(one, str) else one for one in objects)
+        super().print(*objects, **how)
+
+
+def _wrapped(text: str, across: int) -> str:
+    """Break the lines of a text between words, a number and its unit together, and indent what follows alike."""
+    lines = []
+    for line in text.split("\n"):
+        indent = re.match(r" *(- )?", line)
+        lines += textwrap.wrap(
+            re.sub(r"(?<=\d) (?=[A-Za-zµ%])|(?<=N) (?=s/)", "\u00a0", line),
+            max(across, 1),
+            subsequent_indent=" " * len(indent[0] if indent else ""),
+            break_long_words=False,
+            break_on_hyphens=False,
+        ) or [""]
+    return "\n".join(lines).replace("\u00a0", " ")
+
+
 def plain_console() -> Console:
     """Console that prints names as they are, whatever brackets or colons they hold."""
-    console = Console(highlight=False, markup=False, emoji=False)
+    console = _Worded(highlight=False, markup=False, emoji=False)
     if not console.is_terminal:
         console.width = LAYOUT.piped
     return console
@@ -177,8 +203,13 @@ def print_table(console: Console, table: Table) -> None:
     """
     heads = [_head(column) for column in table.columns]
     listed = not any(heads)
+    # Beside a list of names, which has an edge and a gap, values have so much room.
+    room = console.width - max((len(row.name) for row in table.rows), default=0) - LAYOUT.gap - 2
     rows = [
-        [cell if column.words else _typed(cell) for column, cell in zip(table.columns, row.cells, strict=True)]
+        [
+            (_wrapped(cell, room) if listed else cell) if column.words else _typed(cell)
+            for column, cell in zip(table.columns, row.cells, strict=True)
+        ]
         if row.cells
         else []
         for row in table.rows
@@ -230,7 +261,7 @@ def _pieces(
     for column, (head, cells) in enumerate(zip(heads, bodies, strict=True)):
         # Where room is short a head may take more lines than one, but no word of it breaks.
         widest = max([LAYOUT.head, *map(len, [*head.split(), *cells])])
-        lines = [head] if roomy else textwrap.wrap(head, widest)
+        lines = [head] if roomy else _wrapped(head, widest).split("\n")
         width = LAYOUT.gap + max(map(len, [*lines, *cells]))
         if pieces[-1] and width > left:
             pieces.append({})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from cyclopts import App
+from cyclopts import App, Parameter
 
 from movingfrf._basics.version import VERSION
 
@@ -22,6 +22,8 @@ class Status(IntEnum):
 app = App(
     name="movingfrf",
     suppress_keyboard_interrupt=False,
+    # A list is given by its items; `--empty-contact` for none of them is of no use.
+    default_parameter=Parameter(negative_iterable=()),
     version=VERSION,
     help="""How vehicles and roads shake each other, computed in the frequency domain.
 

@@ -109,7 +109,8 @@ def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Param
             console.print(one, style="bold")
             console.print(f"  {entry.summary}", soft_wrap=True)
             console.print(
-                f"  {len(made.dof_names)} degrees of freedom, {count(len(made.contacts), 'contact')}, "
+                f"  {count(len(made.dof_names), 'degree of freedom', 'degrees of freedom')}, "
+                f"{count(len(made.contacts), 'contact')}, "
                 f"{mass / 1e3:.4g} t, {made.natural_frequencies.min():.3g} to {made.natural_frequencies.max():.3g} "
                 f"Hz, damped by {100 * made.damping_ratios.min():.2g} % or more",
                 soft_wrap=True,
@@ -260,8 +261,8 @@ def random(
             )
             result = response()
             alike = one_path(road.profile.one_path, drive.vehicle.paths, drive.vehicle.across)
-            findings = with_more(result.attrs["findings"], alike)
-            result = result.assign_attrs(scenario=scenario.text, findings=findings)
+            findings = with_more(result.attrs["findings"], [*alike, *drive.unusual])
+            result = result.assign_attrs(scenario=scenario.text, findings=findings, **drive.journey.given_speed)
             drawn = response(frequency=drawing_frequencies(result))
             found = random_measures(result, slope=slope)
             files["random.nc"] = as_netcdf(result)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from movingfrf._basics import wording
 from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
 
 
@@ -105,5 +106,5 @@ def paper(
         if len(name.parts) == 1:
             console.print(f"wrote {output / name}", soft_wrap=True)
     for folder in sorted({name.parts[0] for name in written if len(name.parts) > 1}):
-        count = sum(name.parts[0] == folder for name in written)
-        console.print(f"wrote {count} files into {output / folder}", soft_wrap=True)
+        number = sum(name.parts[0] == folder for name in written)
+        console.print(f"wrote {wording.count(number, 'file')} into {output / folder}", soft_wrap=True)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Protocol, runtime_checkable
 
 from movingfrf._basics.checks import checking
+from movingfrf._basics.values import Value
 from movingfrf.guideways.waves import ONE, Ratio, polynomial, table_sum
 
 
@@ -20,8 +21,8 @@ class Beam(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EulerBernoulliBeam:
+@dataclass(frozen=True, slots=True)
+class EulerBernoulliBeam(Value):
     """A slender beam: bending and translational inertia, no shear deformation.
 
     Parameters
@@ -48,6 +49,7 @@ class EulerBernoulliBeam:
 
     bending_stiffness: float
     mass: float
+    _: KW_ONLY
     bending_damping: float = 0.0
 
     def __post_init__(self) -> None:
@@ -65,8 +67,8 @@ class EulerBernoulliBeam:
         return Ratio(polynomial(terms), ONE)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TimoshenkoBeam:
+@dataclass(frozen=True, slots=True)
+class TimoshenkoBeam(Value):
     """A beam with shear deformation and rotary inertia.
 
     Parameters
@@ -88,6 +90,7 @@ class TimoshenkoBeam:
 
     bending_stiffness: float
     mass: float
+    _: KW_ONLY
     shear_stiffness: float
     rotary_inertia: float
 

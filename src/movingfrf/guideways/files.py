@@ -11,6 +11,7 @@ import numpy as np
 
 from movingfrf._basics.array_file import Content, read_arrays, write_arrays
 from movingfrf._basics.checks import ParameterError, checking
+from movingfrf._basics.door import mistaken
 from movingfrf.guideways.sampled import SampledGuideway
 
 # A file holds what a `SampledGuideway` is made of, under the same names; these are numbers, the others arrays.
@@ -64,6 +65,9 @@ def write_sampled_guideway(guideway: SampledGuideway, file: str | Path) -> None:
     ValueError
         If the ending is another one.
     """
+    with checking() as check:
+        if not isinstance(guideway, SampledGuideway):
+            check.refuse("guideway", mistaken("record", guideway))
     arrays = {one.name: getattr(guideway, one.name) for one in fields(guideway) if one.init}
     arrays["stepped"] = 1.0 if guideway.stepped else None
     arrays["remarks"] = [": ".join(remark) for remark in guideway.remarks] or None

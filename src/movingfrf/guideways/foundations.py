@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.values import Value
 from movingfrf.guideways.waves import ONE, Ratio, polynomial, table_sum
 
 
@@ -20,8 +21,8 @@ class Foundation(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Spring:
+@dataclass(frozen=True, slots=True)
+class Spring(Value):
     """Springs and dashpots side by side (Winkler, Kelvin–Voigt).
 
     Parameters
@@ -50,8 +51,8 @@ class Spring:
         return Ratio(_spring(self.stiffness, self.damping, damped), ONE)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ShearLayer:
+@dataclass(frozen=True, slots=True)
+class ShearLayer(Value):
     """Springs and dashpots tied together by a layer that resists shear (Pasternak).
 
     Parameters
@@ -71,6 +72,7 @@ class ShearLayer:
 
     stiffness: float
     damping: float = 0.0
+    _: KW_ONLY
     shear_stiffness: float
 
     def __post_init__(self) -> None:
@@ -85,8 +87,8 @@ class ShearLayer:
         return Ratio(table_sum(_spring(self.stiffness, self.damping, damped), shear), ONE)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OnMass:
+@dataclass(frozen=True, slots=True)
+class OnMass(Value):
     """A foundation that stands on a layer of mass, which stands on another foundation.
 
     Rail pad, sleepers, ballast: ``OnMass(above=pad, mass=250.0, below=ballast)``. Nests to any depth.

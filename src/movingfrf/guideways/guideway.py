@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import Finding, checking, uncovered
+from movingfrf._basics.door import mistaken
 
 
 class Guideway(Protocol):
@@ -194,10 +195,7 @@ def require_guideway(guideway: object) -> None:
         If it is none.
     """
     if not hasattr(guideway, "moving_frf"):
-        raise ValueError(
-            f"guideway must have a moving FRF, as a track has, got a {type(guideway).__name__}; a finite road is "
-            "for cdfm, sim and newmark_loads, or struck with moving_impulse_response"
-        )
+        raise ValueError(f"guideway {mistaken('guideway', guideway)}")
     # Looked up without asking for it, which may take a second; unless it is handed on.
     if getattr_static(guideway, "critical_speed", None) is None and not hasattr(guideway, "critical_speed"):
         raise ValueError(

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 from movingfrf._basics.checks import checking
+from movingfrf._basics.values import Value
 from movingfrf.guideways.waves import ONE, Ratio, polynomial
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RelaxingSpring:
+@dataclass(frozen=True, slots=True)
+class RelaxingSpring(Value):
     """A spring, and beside it another one on a dashpot (Zener, the standard linear solid).
 
     A rail pad of rubber is stiffer in a vibration than at rest, and no further beyond some frequency; springs and
@@ -46,6 +47,7 @@ class RelaxingSpring:
     """
 
     stiffness: float
+    _: KW_ONLY
     relaxing_stiffness: float
     damping: float
 

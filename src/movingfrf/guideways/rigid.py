@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray
+from movingfrf._basics.values import Value
 from movingfrf.guideways.guideway import at_offsets
 
 
 @dataclass(frozen=True, slots=True)
-class RigidGuideway:
+class RigidGuideway(Value):
     """A guideway without any compliance.
 
     Examples

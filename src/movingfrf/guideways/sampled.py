@@ -13,12 +13,13 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
 from movingfrf._basics.checks import Finding, checking, shown, warned
 from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf._basics.smooth import smooth_step
+from movingfrf._basics.values import Value
 from movingfrf.guideways.guideway import Asked, at_offsets
 from movingfrf.guideways.record import RECORD, Onset, onset_of, tail_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SampledGuideway(Remembering):
+class SampledGuideway(Remembering, Value):
     """A guideway given by samples of its moving impulse response, at one speed and for some offsets.
 
     From its first sample, a jump where that is not zero, the response is taken to set in like √t or like t, as the

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from movingfrf._basics.checks import checking, shown
+from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import Beam
 from movingfrf.guideways.waves import ONE, Ratio, polynomial
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TensionedBeam:
+@dataclass(frozen=True, slots=True)
+class TensionedBeam(Value):
     """A beam under an axial force, that keeps its direction and its size.
 
     A rail of section A, welded without joints, carries −E A α ΔT when it is ΔT warmer than when it was laid: some

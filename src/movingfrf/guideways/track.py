@@ -9,7 +9,9 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.door import given
 from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import Beam
 from movingfrf.guideways.critical import (
     buckles_at,
@@ -24,7 +26,7 @@ from movingfrf.guideways.waves import Ratio, residue_sum
 
 
 @dataclass(frozen=True, slots=True)
-class Track(Remembering):
+class Track(Remembering, Value):
     """A beam on a foundation, infinitely long; made by `track`.
 
     Parameters
@@ -149,9 +151,9 @@ def track(beam: Beam, foundation: Foundation) -> Track:
     """
     with checking() as check:
         if not isinstance(beam, Beam):
-            check.refuse("beam", f"must be a beam, got {beam!r}")
+            check.refuse("beam", f"must be a beam, got {given(beam)}")
         if not isinstance(foundation, Foundation):
-            check.refuse("foundation", f"must be a foundation, got {foundation!r}")
+            check.refuse("foundation", f"must be a foundation, got {given(foundation)}")
     made = Track(beam, foundation)
     if (wavenumber := buckles_at(made.stiffness(damped=False))) > 0:
         raise ValueError(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf._basics.checks import Checks, checking
 from movingfrf.metrics.loads import check_coupled, samples_before
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ def weighting(name: str, frequency: ArrayLike) -> ComplexArray:
     array([0.4825, 0.9884, 0.0887])
     """
     with checking() as check:
-        check_weighting(check, name)
+        name = check.choice("weighting", name, WEIGHTINGS)
         f = check.array("frequency", frequency, "Hz", None)
     chosen, p = WEIGHTINGS[name], 2j * np.pi * f
     low, high = chosen.band
@@ -223,7 +223,7 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk", *, rec
     import scipy.fft
 
     with checking() as check:
-        check_weighting(check, name)
+        name = check.choice("weighting", name, WEIGHTINGS)
         time_step = check.positive("time_step", time_step, "s")
         values, shape = _histories(check, "acceleration", acceleration, "m/s²")
     # What is left of a weighting's memory at the end of the padding [1e-15 to 1e-7].
@@ -351,10 +351,10 @@ def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk", since: float
     ('fairly uncomfortable', 'uncomfortable')
     """
     with checking() as check:
-        check_weighting(check, weighting)
+        weighting = check.choice("weighting", weighting, WEIGHTINGS)
         result = check_coupled(check, result)
-        if not check.faults and dof not in result.dof.values.tolist():
-            check.refuse("dof", f"must be one of {', '.join(map(str, result.dof.values))}, got {shown(dof)}")
+        if not check.faults:
+            dof = check.choice("dof", dof, map(str, result.dof.values))
     step = float(result.attrs["time_step"])
     return vibration(result.acceleration.sel(dof=dof).values, step, weighting, since=since)
 
@@ -474,20 +474,6 @@ def comfort_reactions(rms: float) -> tuple[str, ...]:
 def _second_order(p: ComplexArray, frequency: float, quality: float = np.sqrt(0.5)) -> ComplexArray:
     ratio = p / (2 * np.pi * frequency)
     return 1 + ratio / quality + ratio**2
-
-
-def check_weighting(check: Checks, name: object) -> None:
-    """Refuse what names no frequency weighting.
-
-    Parameters
-    ----------
-    check : Checks
-        Checks that are going on.
-    name : object
-        What was given as a name.
-    """
-    if not (isinstance(name, str) and name in WEIGHTINGS):
-        check.refuse("weighting", f"must be one of {', '.join(WEIGHTINGS)}, got {shown(name)}")
 
 
 def _without_line(values: FloatArray, time_step: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -12,6 +12,7 @@ from scipy.special import gammaln
 
 from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import Checks, checking, plain, shown
+from movingfrf._basics.door import mistaken
 from movingfrf.results.labels import RANDOM_QUANTITIES, kind_of
 
 if TYPE_CHECKING:
@@ -237,8 +238,7 @@ def spectral_damage(
     with checking() as check:
         f = check.array("frequency", frequency, "Hz", (None,))
         given = check.array("density", density, "unit²/Hz", (f.size,))
-        if not (isinstance(method, str) and method in METHODS):
-            check.refuse("method", f"must be one of {', '.join(METHODS)}, got {shown(method)}")
+        method = check.choice("method", method, METHODS)
         if not check.faults and (f.size < 2 or f[0] < 0 or (np.diff(f) <= 0).any()):
             check.refuse("frequency", "must be at least two numbers, not negative and increasing [Hz]")
         if (given < 0).any():
@@ -373,8 +373,7 @@ def spectral_fatigue(
     """
     with checking() as check:
         check_random(check, result)
-        if not (isinstance(quantity, str) and quantity in RANDOM_QUANTITIES):
-            check.refuse("quantity", f"must be one of {', '.join(RANDOM_QUANTITIES)}, got {shown(quantity)}")
+        quantity = check.choice("quantity", quantity, RANDOM_QUANTITIES)
     frequency, density = result.frequency.values, result[f"{quantity}_density"].values
     if "bandwidth" in result.coords:
         # The damage is integrated by trapezoids: so weighted they give the moments of the Gauss points.
@@ -397,4 +396,4 @@ def spectral_fatigue(
 def check_random(check: Checks, result: object) -> None:
     """Refuse what is not the response to a random road."""
     if kind_of(result) != "random":
-        check.refuse("result", "must be the response to a random road, from `random_response`")
+        check.refuse("result", mistaken("random result", result))

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
 from movingfrf._basics.checks import checking, uncovered
+from movingfrf._basics.door import mistaken
 from movingfrf.guideways.guideway import Guideway, findings_of, require_guideway, told
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import in_moving_frame, wavenumbers
@@ -250,7 +251,7 @@ def wave_decay_rate(track: Track, frequency: ArrayLike) -> FloatArray:
     with checking() as check:
         f = check.array("frequency", frequency, "Hz", (None,))
         if not isinstance(track, Track):
-            check.refuse("track", f"must be a track, whose waves are known, got a {type(track).__name__}")
+            check.refuse("track", mistaken("track", track))
     omega: ComplexArray = (2 * np.pi * f).astype(complex)
     kappa = wavenumbers(in_moving_frame(track.stiffness().above, 0.0, omega))
     return NEPER * np.abs(kappa.imag).min(axis=0)

@@ -11,7 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf.results.findings import Finding, announced
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,7 +63,7 @@ GOLDEN_CAR = ReferenceCar(tyre=653.0, suspension=63.3, damping=6.0, unsprung=0.1
 RIDE_NUMBER_CAR = ReferenceCar(tyre=5120.0, suspension=390.0, damping=17.0, unsprung=0.036)
 
 
-def iri(profile: Profile, *, segment: float | None = None, average: float = PROCEDURE.average) -> FloatArray:
+def iri(profile: Profile, segment: float | None = None, *, average: float = PROCEDURE.average) -> FloatArray:
     """Compute the international roughness index of a profile.
 
     The mean rectified speed of the suspension of the golden car, over its speed of 80 km/h, at the n stations:
@@ -121,6 +121,7 @@ def iri(profile: Profile, *, segment: float | None = None, average: float = PROC
     >>> (np.pi / 2 * iri(wave, segment=500.0)[-1]).round(2)
     array([1.26])
     """
+    require_profile(profile)
     found = straight_index(profile, segment, average)
     announced(coarse_for_index(profile, average))
     return found
@@ -179,7 +180,7 @@ def _straight_and_smooth(profile: Profile) -> tuple[Profile, Profile] | None:
 
 
 def ride_number(
-    profile: Profile, *, segment: float | None = None, average: float = PROCEDURE.average
+    profile: Profile, segment: float | None = None, *, average: float = PROCEDURE.average
 ) -> FloatArray:
     """Compute the ride number of a profile: how passengers rate the ride, from 0 (impassable) to 5 (perfect).
 
@@ -228,6 +229,7 @@ def ride_number(
     >>> ride_number(wave).round(2)
     array([4.32])
     """
+    require_profile(profile)
     found = _straight_number(profile, segment, average)
     if both := _straight_and_smooth(profile):
         straight, smooth = (_straight_number(each, None, average)[0] for each in both)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import BoolArray, FloatArray, require_memory
 from movingfrf._basics.checks import Checks, checking, real_numbers
+from movingfrf._basics.door import mistaken
 from movingfrf._basics.spline import cubic
+from movingfrf._basics.values import Value
 from movingfrf.results.labels import flaws, resolved, time_step_of
 
 if TYPE_CHECKING:
@@ -20,7 +23,8 @@ if TYPE_CHECKING:
 POINT_SPACING = 0.1
 
 
-class ContactLoss(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ContactLoss(Value):
     """For how long each contact bears nothing."""
 
     share: FloatArray  # of the time, shape (contact,)
@@ -103,6 +107,9 @@ def road_stress_factor(coefficient: ArrayLike) -> FloatArray:
     >>> road_stress_factor([0.0, 0.2])
     array([1.    , 1.2448])
     """
+    with checking() as check:
+        if hasattr(coefficient, "data_vars"):
+            check.refuse("coefficient", mistaken("load coefficient", coefficient))
     s = real_numbers(coefficient)
     with checking() as check:
         if not (s >= 0).all():
@@ -380,7 +387,7 @@ def check_coupled(check: Checks, result: Any, *also: str, since: float = 0.0) ->
     """
     names = ("contact_force", "static_load", "acceleration", *also)
     if not (hasattr(result, "data_vars") and {"time", "contact", "dof"} <= set(result.dims)):
-        check.refuse("result", f"must be the coupled response of a vehicle, with {', '.join(names)}")
+        check.refuse("result", mistaken("coupled result", result))
         return result
     for flaw in flaws(result, names):
         check.refuse("result", f"must be the coupled response of a vehicle in finite numbers, but {flaw}")

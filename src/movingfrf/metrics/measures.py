@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from movingfrf._basics.checks import Checks, checking
-from movingfrf.metrics.comfort import check_weighting
+from movingfrf.metrics.comfort import WEIGHTINGS
 from movingfrf.metrics.entry import History, Random, Table
 from movingfrf.metrics.fatigue import check_random
 from movingfrf.metrics.listed import TABLES, peak, rms
@@ -125,7 +125,7 @@ def assess(
         if not check.faults:
             _check_chosen(check, "contacts", contacts, list(range(result.sizes["contact"])))
             _check_chosen(check, "dofs", dofs, result.dof.values.tolist())
-        check_weighting(check, weighting)
+        weighting = check.choice("weighting", weighting, WEIGHTINGS)
         if slope is not None:
             slope = check.positive("slope", slope, "1")
     names = result.dof.values.tolist()

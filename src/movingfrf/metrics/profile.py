@@ -10,12 +10,13 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray, finite
 from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.values import Value, brief
 from movingfrf._basics.welch import Spectra
 from movingfrf._basics.wording import evenly_spread, named_paths
 from movingfrf.metrics.iri import PROCEDURE, coarse_for_index, straight_index
 from movingfrf.metrics.spectra import path_spectra
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES
 from movingfrf.roughness.steps.resampled import resampled
 from movingfrf.roughness.steps.selected import selected
@@ -39,8 +40,8 @@ class Oddities:
 ODDITIES = Oddities()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PathDescription:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class PathDescription(Value):
     """One path of a profile.
 
     Parameters
@@ -78,8 +79,8 @@ class PathDescription:
     density: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ProfileDescription:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ProfileDescription(Value):
     """A profile, described.
 
     Parameters
@@ -106,6 +107,18 @@ class ProfileDescription:
     paths: tuple[PathDescription, ...]
     coherence: tuple[FloatArray, FloatArray] | None
     findings: tuple[str, ...]
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell the profile, and of each path its class and roughness index, in words."""
+        paths = [
+            (
+                f"path {path.number}",
+                f"ISO 8608 class {path.fit.road_class or 'none'}, IRI "
+                + ("none" if np.isnan(path.index) else f"{path.index:.3g} mm/m"),
+            )
+            for path in self.paths
+        ]
+        return [*self.profile.told(), *paths, ("findings", brief("; ".join(self.findings)) or "none")]
 
     @property
     def length(self) -> float:
@@ -142,6 +155,7 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
     >>> describe_profile(road).paths[0].fit.road_class
     'B'
     """
+    require_profile(profile)
     steps = np.diff(profile.stations)
     alike = profile.alike
     findings = [

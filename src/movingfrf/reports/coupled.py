@@ -267,8 +267,8 @@ def _accelerations_figure(result: xr.Dataset, most: int = 8) -> Illustration:
     figure = blank((SIZE.panel + 0.15) * max(len(dofs), 2) + 0.4)
     axes = figure.subplots(len(dofs), 2, sharex="col", squeeze=False, width_ratios=(3, 2))
     for row, dof in zip(axes, dofs, strict=True):
-        plots.accelerations(result, dof, row[0])
-        plots.acceleration_spectrum(result, dof, row[1])
+        plots.accelerations(result, row[0], dof=dof)
+        plots.acceleration_spectrum(result, row[1], dof=dof)
         row[0].set_title(readable(str(result.dof.values[dof])), fontweight="bold")
         row[1].set_title("power spectral density")
         unit = result.dof_unit.values[dof]

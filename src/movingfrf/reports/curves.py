@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import shown, spelt
 from movingfrf._basics.wording import evenly_spread, some_of
 
 if TYPE_CHECKING:
@@ -199,7 +200,7 @@ def _curves(names: Sequence[str], chosen: Sequence[int] | None) -> list[Curve]:
     """Curves of the chosen columns; a column keeps its colour whatever else is chosen."""
     usual = evenly_spread(len(names))
     colours = {column: PALETTE[rank] for rank, column in enumerate(usual)}
-    columns = usual if chosen is None else list(chosen)
+    columns = usual if chosen is None else [_column(one, names) for one in chosen]
     taken = {colours[column] for column in columns if column in colours}
     free = itertools.cycle([colour for colour in PALETTE if colour not in taken] or PALETTE)
     return [Curve(c, names[c], colours[c] if c in colours else next(free)) for c in columns]
@@ -210,9 +211,21 @@ def place_curves(result: xr.Dataset, places: Sequence[int] | None) -> list[Curve
     return contact_curves(result, places) if "contact" in result.dims else point_curves(result, places)
 
 
-def dof_curve(result: xr.Dataset, dof: int) -> Curve:
+def dof_curve(result: xr.Dataset, dof: int | str) -> Curve:
     """Name a degree of freedom, alone in its figure."""
-    return Curve(dof, readable(str(result.dof.values[dof])), INK)
+    names = list(map(str, result.dof.values))
+    column = _column(dof, names)
+    return Curve(column, readable(names[column]), INK)
+
+
+def _column(chosen: int | str, names: Sequence[str]) -> int:
+    """Find the number of what was chosen to be drawn, by its number or its name."""
+    if isinstance(chosen, str) and (name := spelt(chosen, names)) is not None:
+        return names.index(name)
+    if isinstance(chosen, (int, np.integer)) and 0 <= chosen < len(names):
+        return int(chosen)
+    known = ", ".join(f"{number} ({name})" for number, name in enumerate(names))
+    raise ValueError(f"drawn can be {known}, got {shown(chosen)}")
 
 
 def readable(name: str) -> str:

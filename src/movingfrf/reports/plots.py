@@ -1,4 +1,8 @@
-"""Figures of a result: each function draws on the Axes it is given and returns it; nothing is ever shown."""
+"""Figures of a result: each function draws on the Axes it is given and returns it; nothing is ever shown.
+
+All take the result first and the Axes second, then by keyword what to draw and in which interval; `docs/plots.md`
+lists them.
+"""
 
 from __future__ import annotations
 
@@ -189,17 +193,17 @@ def deflection_spectra(result: xr.Dataset, ax: Axes, *, places: Sequence[int] | 
     return ax
 
 
-def accelerations(result: xr.Dataset, dof: int, ax: Axes, *, interval: Interval | None = None) -> Axes:
+def accelerations(result: xr.Dataset, ax: Axes, *, dof: int | str, interval: Interval | None = None) -> Axes:
     """Draw the acceleration of a degree of freedom [m/s² or rad/s²] over time [s].
 
     Parameters
     ----------
     result : xarray.Dataset
         What `simulate` returned.
-    dof : int
-        Number of the degree of freedom.
     ax : matplotlib.axes.Axes
         Where to draw.
+    dof : int or str
+        Number or name of the degree of freedom.
     interval : tuple of float, optional
         First and last instant [s]; by default the whole record.
 
@@ -208,31 +212,33 @@ def accelerations(result: xr.Dataset, dof: int, ax: Axes, *, interval: Interval 
     matplotlib.axes.Axes
         `ax`.
     """
-    draw_histories(ax, result.time.values, result.acceleration.values, [dof_curve(result, dof)], 1.0, interval)
-    ax.set_ylabel(f"acceleration [{result.dof_unit.values[dof]}/s²]")
+    curve = dof_curve(result, dof)
+    draw_histories(ax, result.time.values, result.acceleration.values, [curve], 1.0, interval)
+    ax.set_ylabel(f"acceleration [{result.dof_unit.values[curve.column]}/s²]")
     fit_height(ax)
     return ax
 
 
-def acceleration_spectrum(result: xr.Dataset, dof: int, ax: Axes) -> Axes:
+def acceleration_spectrum(result: xr.Dataset, ax: Axes, *, dof: int | str) -> Axes:
     """Draw the power spectral density of an acceleration [(m/s²)²/Hz or (rad/s²)²/Hz] over frequency [Hz].
 
     Parameters
     ----------
     result : xarray.Dataset
         What `simulate` returned.
-    dof : int
-        Number of the degree of freedom.
     ax : matplotlib.axes.Axes
         Where to draw.
+    dof : int or str
+        Number or name of the degree of freedom.
 
     Returns
     -------
     matplotlib.axes.Axes
         `ax`.
     """
-    draw_densities(ax, result, "acceleration", [dof_curve(result, dof)], amplitude=False)
-    ax.set_ylabel(f"PSD [({result.dof_unit.values[dof]}/s²)²/Hz]")
+    curve = dof_curve(result, dof)
+    draw_densities(ax, result, "acceleration", [curve], amplitude=False)
+    ax.set_ylabel(f"PSD [({result.dof_unit.values[curve.column]}/s²)²/Hz]")
     return ax
 
 

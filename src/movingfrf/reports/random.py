@@ -17,7 +17,7 @@ from movingfrf.reports.curves import PALETTE, Curve, contact_curves, distinct, l
 from movingfrf.reports.figures import SIZE, Illustration, blank, drawing, illustrated
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Setting, measure_tables
-from movingfrf.results.labels import Measure, speed_in_words
+from movingfrf.results.labels import Measure, speed_in_words, speeds_of
 from movingfrf.roughness.spectra.iso import IsoRoad
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def _settings(result: xr.Dataset) -> list[Setting]:
     speed, critical = attrs["speed"], attrs["critical_speed"]
     low, high = attrs["lowest_frequency"], attrs["highest_frequency"]
     return [
-        Setting("Speed", f"{plain(speed)} m/s", f"{plain(round(3.6 * speed, 6))} km/h"),
+        Setting("Speed", *speeds_of(result)),
         Setting("Exposure", f"{plain(attrs['exposure'])} s", "for which the largest values are expected"),
         Setting("Band", f"{number(low)} to {number(high)} Hz", "in which the road has content at this speed"),
         Setting("Frequencies", str(attrs["frequencies"]), "placed where the densities need them"),

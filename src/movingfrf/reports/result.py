@@ -15,7 +15,7 @@ from movingfrf.reports.loaded import loaded_method, loaded_summary, loaded_table
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import Setting
 from movingfrf.reports.ways import is_stepped, way_settings
-from movingfrf.results.labels import HISTORIES, duration_of, kind_of, resolved, time_step_of
+from movingfrf.results.labels import HISTORIES, duration_of, kind_of, resolved, speeds_of, time_step_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,7 +70,7 @@ def _settings(result: xr.Dataset) -> list[Setting]:
     speed = attrs["speed"]
     found = [
         *way_settings(result),
-        Setting("Speed", f"{plain(speed)} m/s", f"{plain(round(3.6 * speed, 6))} km/h"),
+        Setting("Speed", *speeds_of(result)),
         Setting("Duration", f"{plain(duration)} s"),
         Setting("Distance", f"{plain(float(f'{duration * abs(speed):.12g}'))} m"),
         Setting("Time step", f"{plain(1e3 * step)} ms", f"{result.sizes['time']} samples"),

@@ -36,7 +36,7 @@ from movingfrf.results.findings import Finding
 from movingfrf.results.labels import RANDOM_QUANTITIES, attributes, labelled, turned
 from movingfrf.roughness.excitation import Touch
 from movingfrf.roughness.spectra.coherence import Coherence
-from movingfrf.roughness.spectra.spectrum import Spectrum
+from movingfrf.roughness.spectra.spectrum import Spectrum, require_spectrum
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 if TYPE_CHECKING:
@@ -185,10 +185,10 @@ def random_response(
     """
     require_guideway(guideway)
     require_vehicle(vehicle)
+    require_spectrum(spectrum)
     with checking() as check:
         speed = check.positive("speed", speed, "m/s")
         exposure = check.positive("exposure", exposure, "s")
-        _check_spectrum(check, spectrum)
         shared = _checked_coherence(check, coherence, len(set(vehicle.paths)))
         wanted = None if frequency is None else check.array("frequency", frequency, "Hz", (None,))
         if wanted is not None and not check.faults and not (wanted.size and wanted.min() >= 0):
@@ -205,7 +205,7 @@ def random_response(
     force_rms, crossing = statistics["contact_force_rms"], statistics["contact_force_crossing_rate"]
     lift_off_share, lift_off_rate = lift_off(steady.load, force_rms, crossing)
     found = [
-        *lifting_off(lift_off_share, lift_off_rate, exposure),
+        *lifting_off(lift_off_share, lift_off_rate, exposure, vehicle.standing),
         *surveyed.findings,
         *_at_the_end(lines, vehicle, spectrum),
     ]
@@ -243,15 +243,6 @@ def random_response(
         findings=found,
     )
     return labelled(values, settings)
-
-
-def _check_spectrum(check: Checks, spectrum: object) -> None:
-    if isinstance(spectrum, type):
-        check.refuse("spectrum", f"must be a roughness spectrum, got the class {spectrum.__name__} itself")
-    elif not all(hasattr(spectrum, name) for name in ("band", "density", "variance_below")):
-        check.refuse(
-            "spectrum", f"must be a roughness spectrum, as IsoRoad is, got an object of {type(spectrum).__name__}"
-        )
 
 
 def _checked_coherence(check: Checks, coherence: Coherence | float | None, paths: int) -> Coherence | float:

@@ -20,7 +20,7 @@ from movingfrf.response.survey import SteadyState, survey
 from movingfrf.response.system import CoupledHistories, Response, System
 from movingfrf.results.labels import attributes, labelled, turned
 from movingfrf.roughness.excitation import Excitation, Touch, excite
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
@@ -171,6 +171,7 @@ def driven(
     """
     require_guideway(guideway)
     require_vehicle(vehicle)
+    require_profile(profile)
     progress("profile", 0.0)
     excitation = excitation_of(profile, vehicle, journey)
     system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)
@@ -186,7 +187,9 @@ def driven(
         journey.time_step,
     )
     found = [
-        *find.contact_lost(turned(steady.load[:, None] + histories.force.values[0]), journey.time_step),
+        *find.contact_lost(
+            turned(steady.load[:, None] + histories.force.values[0]), journey.time_step, vehicle.standing
+        ),
         *surveyed.findings,
         *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
         *find.not_decayed("vehicle's motion", histories.motion.wrapped, histories.motion.values),

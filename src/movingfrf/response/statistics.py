@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.wording import Standing
 from movingfrf.results.findings import Finding
 
 
@@ -54,19 +55,28 @@ def lift_off(load: FloatArray, rms: FloatArray, crossing: FloatArray) -> tuple[F
 
 
 def lifting_off(
-    share: FloatArray, rate: FloatArray, exposure: float, *, most_times: float = 1.0, most_share: float = 1e-3
+    share: FloatArray,
+    rate: FloatArray,
+    exposure: float,
+    contacts: Standing,
+    *,
+    most_times: float = 1.0,
+    most_share: float = 1e-3,
 ) -> list[Finding]:
     """Contacts that are likely to lift off within the exposure.
 
     Contact counts as lost, by convention, beyond so many expected lift-offs or beyond such a share of the time.
     """
+    often = rate * exposure
+    lost = np.flatnonzero((often > most_times) | (share > most_share)).tolist()
+    if not lost:
+        return []
+    up_to = "up to " if len(lost) > 1 else "about "
     return [
         Finding(
             "contact_lost",
-            f"contact {contact} would lift off the road about {often:.2g} times in {exposure:g} s, for "
-            f"{100 * part:.2g} % of the time; the linear contact pulls there instead, so extremes of forces and "
-            "accelerations are not to be relied on",
+            f"{contacts.listed(lost)} would lift off the {contacts.ground} {up_to}{often[lost].max():.2g} times in "
+            f"{exposure:g} s, for {100 * share[lost].max():.2g} % of the time; the linear contact pulls there "
+            "instead, so extremes of forces and accelerations are not to be relied on",
         )
-        for contact, (part, often) in enumerate(zip(share, rate * exposure, strict=True))
-        if often > most_times or part > most_share
     ]

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
+from movingfrf._basics.wording import count
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.batches import unthreaded
 from movingfrf.response.solve import solve
@@ -80,7 +81,8 @@ def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: A
             check.refuse("frequency", f"must hold frequencies of at least zero [Hz], got {least}")
     contacts, dofs = len(vehicle.contacts), len(vehicle.dof_names)
     require_memory(
-        BYTES_PER_VALUE * lines.size * contacts * (contacts + dofs), f"a transfer over {lines.size} frequencies"
+        BYTES_PER_VALUE * lines.size * contacts * (contacts + dofs),
+        f"a transfer over {count(lines.size, 'frequency', 'frequencies')}",
     )
     system = System(guideway=guideway, vehicle=vehicle, speed=speed)
     surveyed = survey(system)

@@ -11,6 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Finding as Finding
 from movingfrf._basics.checks import warned
+from movingfrf._basics.wording import Standing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,21 +33,22 @@ class Thresholds:
 THRESHOLDS = Thresholds()
 
 
-def contact_lost(total_force: FloatArray, time_step: float) -> list[Finding]:
-    """Total contact forces, shape (time, contact) [N], that turn to tension, which no tyre can carry."""
-    found = []
-    for contact, force in enumerate(total_force.T):
-        lifted = force < 0
-        if lifted.any():
-            found.append(
-                Finding(
-                    "contact_lost",
-                    f"contact {contact} would lift off the road during {lifted.mean():.2%} of the time, first at "
-                    f"{lifted.argmax() * time_step:.3f} s; the linear contact pulls there instead, so forces "
-                    "and accelerations around those instants are not to be relied on",
-                )
-            )
-    return found
+def contact_lost(total_force: FloatArray, time_step: float, contacts: Standing) -> list[Finding]:
+    """Total contact forces, shape (time, contact) [N], that turn to tension, which no contact can carry."""
+    lifted = total_force < 0
+    lost = np.flatnonzero(lifted.any(axis=0)).tolist()
+    if not lost:
+        return []
+    up_to = "up to " if len(lost) > 1 else ""
+    return [
+        Finding(
+            "contact_lost",
+            f"{contacts.listed(lost)} would lift off the {contacts.ground} during {up_to}"
+            f"{lifted.mean(axis=0).max():.2%} of the time, first at "
+            f"{lifted.any(axis=1).argmax() * time_step:.3f} s; the linear contact pulls there instead, so forces "
+            "and accelerations around those instants are not to be relied on",
+        )
+    ]
 
 
 def near_critical(speed: float, critical_speed: float) -> list[Finding]:
@@ -107,8 +109,8 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
     return [
         Finding(
             "beyond_truncation",
-            f"the road counts as rigid beyond {truncation:g} Hz, which may change an output by {error:.1e} of its "
-            "root mean square; a higher truncation changes less",
+            f"the guideway counts as rigid beyond {truncation:g} Hz, which may change an output by {error:.1e} of "
+            "its root mean square; a higher truncation changes less",
             error,
         )
     ]
@@ -165,8 +167,8 @@ def unresolved(figure: float, solved_step: float, *, stated: bool) -> list[Findi
     why = (
         f"the stated step of {solved_step:.3g} s leaves out what the contacts see above that"
         if stated
-        else "a road that begins abruptly is of that kind, and kinks under a dashpot or a rigid contact; blending "
-        "in, a footprint or a smoother profile would help"
+        else "a profile that begins abruptly is of that kind, and kinks under a dashpot or a rigid contact; "
+        "blending in, a footprint or a smoother profile would help"
     )
     return [
         Finding(
@@ -185,8 +187,8 @@ def jumps_at_the_start(jump: float) -> list[Finding]:
     return [
         Finding(
             "jump_at_the_start",
-            f"the road begins with a step of {1e3 * jump:.3g} mm under a contact with a dashpot, or a rigid one: "
-            "its force is unbounded there, and no number for the first instants is right; a blend would help",
+            f"the profile begins with a step of {1e3 * jump:.3g} mm under a contact with a dashpot, or a rigid "
+            "one: its force is unbounded there, and no number for the first instants is right; a blend would help",
             1.0,
         )
     ]
@@ -199,7 +201,7 @@ def profile_ends(figure: float, beyond: float) -> list[Finding]:
     return [
         Finding(
             "profile_ends",
-            f"a footprint or a cam reaches {beyond:.3g} m past the end of the profile, where the road is guessed: "
+            f"a footprint or a cam reaches {beyond:.3g} m past the end of the profile, where it is guessed: "
             f"the last samples may be off by {figure:.1e} of the largest value; a longer profile, or a shorter "
             "journey, would do without a guess",
             figure,
@@ -212,17 +214,17 @@ def graded(grade: float, slope: float, sets_out: float) -> list[Finding]:
     found = []
     if abs(grade) > THRESHOLDS.grade:
         found.append(
-            f"the road begins with a grade of {100 * grade:+.2g} %, on which the vehicle is already travelling: "
+            f"the profile begins with a grade of {100 * grade:+.2g} %, on which the vehicle is already travelling: "
             "elevation and motion are about that line; the load transfer of a vehicle on a slope is not part of it"
         )
     elif abs(slope - grade) > THRESHOLDS.grade:
         found.append(
-            f"the road begins with a mean slope of {100 * slope:+.2g} %, onto which the vehicle drives: that "
+            f"the profile begins with a mean slope of {100 * slope:+.2g} %, onto which the vehicle drives: that "
             "shakes it. With a blend, and 100 m of the profile or more, a grade is part of the steady state"
         )
     if abs(sets_out - grade) > THRESHOLDS.sets_out and abs(sets_out - slope) > THRESHOLDS.grade:
         found.append(
-            f"the road sets out at {100 * sets_out:+.2g} % over its first metres, its grade is "
+            f"the profile sets out at {100 * sets_out:+.2g} % over its first metres, its grade is "
             f"{100 * grade:+.2g} %: the vehicle drives onto the difference, which shakes it"
         )
     return [Finding("grade", message) for message in found]

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.version import VERSION
-from movingfrf._basics.wording import plain
+from movingfrf._basics.wording import in_both_units
 from movingfrf.results.findings import Finding, announced
 
 if TYPE_CHECKING:
@@ -348,9 +348,13 @@ def flaws(result: xr.Dataset, names: Iterable[str]) -> list[str]:
 
 def speed_in_words(result: xr.Dataset) -> str:
     """Write the speed in both units."""
-    speed = result.attrs["speed"]
     # Unbreakable spaces: a number stays with its unit.
-    return f"{plain(speed)}\u00a0m/s ({plain(round(3.6 * speed, 6))}\u00a0km/h)"
+    return "{} ({})".format(*(words.replace(" ", "\u00a0") for words in speeds_of(result)))
+
+
+def speeds_of(result: xr.Dataset) -> tuple[str, str]:
+    """Write the speed as it was given, and in the other unit."""
+    return in_both_units(result.attrs["speed"], in_kmh="speed_kmh" in result.attrs)
 
 
 def duration_of(result: xr.Dataset) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import changed, like
 
 
@@ -40,6 +40,8 @@ def superposed(*profiles: Profile) -> Profile:
     >>> round(float(both.along(0)(5.0)), 6)
     0.021
     """
+    for profile in profiles:
+        require_profile(profile, "profiles")
     with checking() as check:
         if not profiles:
             check.refuse("profiles", "must be at least one")
@@ -89,6 +91,8 @@ def side_by_side(*profiles: Profile) -> Profile:
     >>> side_by_side(mf.wheel_flat(radius=0.46, chord=0.05, length=12.0), level).paths
     2
     """
+    for profile in profiles:
+        require_profile(profile, "profiles")
     with checking() as check:
         if not profiles:
             check.refuse("profiles", "must be at least one")
@@ -97,7 +101,7 @@ def side_by_side(*profiles: Profile) -> Profile:
     return Profile(stations, np.stack(columns, axis=1), source=_sources(profiles))
 
 
-def rolled(profile: Profile, *, radius: float) -> Profile:
+def rolled(profile: Profile, radius: float) -> Profile:
     """Path of the centre of a rigid wheel that rolls over a profile, from its height on a level road.
 
     A round wheel bridges what is narrower than itself: it rises ahead of a step, and never reaches the bottom of a
@@ -134,6 +138,7 @@ def rolled(profile: Profile, *, radius: float) -> Profile:
     >>> seen([0.89, 0.95, 1.0]).round(4).tolist()
     [0.0, 0.0075, 0.01]
     """
+    require_profile(profile)
     with checking() as check:
         radius = check.positive("radius", radius, "m")
     step = profile.require_even("rolling a wheel over it")

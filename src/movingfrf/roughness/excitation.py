@@ -20,6 +20,7 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.enveloping import enveloping
 from movingfrf._basics.smooth import memory, onward, smooth_step, smooth_step_slope
 from movingfrf._basics.spline import Piecewise, cubic
+from movingfrf._basics.wording import count
 from movingfrf.roughness.profile import SLACK, Profile
 
 
@@ -398,6 +399,6 @@ def require_cover(profile: Profile, first: float, last: float, paths: Sequence[i
         )
     if not profile.same_across and max(paths) >= profile.paths:
         raise ValueError(
-            f"a contact follows path {max(paths)}, but the profile has {profile.paths} path(s), counted from 0; a "
-            "profile without columns is the same for all paths"
+            f"a contact follows path {max(paths)}, but the profile has {count(profile.paths, 'path')}, counted "
+            "from 0; a profile without columns is the same for all paths"
         )

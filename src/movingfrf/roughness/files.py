@@ -9,12 +9,13 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import ParameterError, checking, option, shown
+from movingfrf._basics.checks import ParameterError, checking, option, shown, spelt
 from movingfrf._basics.output import Content, behind_links, replacing
+from movingfrf._basics.wording import count
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -127,8 +128,8 @@ def read_profile(
             check.refuse("columns", f"must be a list of names or numbers of columns, got {shown(columns)}")
         if not isinstance(crop_rims, bool):
             check.refuse("crop_rims", f"must be true or false, got {shown(crop_rims)}")
-        if format is not None and format not in list(FORMATS):
-            check.refuse("format", f"must be one of {', '.join(FORMATS)}, got {shown(format)}")
+        if format is not None:
+            format = check.choice("format", format, FORMATS)
     try:
         form = _recognised(path, format)
         raw = form.read(path, columns)
@@ -190,6 +191,7 @@ def write_profile(
     >>> read_profile(path).profile.stations.tolist()
     [0.0, 1.0, 2.0, 3.0]
     """
+    require_profile(profile)
     path = behind_links(Path(file))
     made = writer(path, format=format, encoding=encoding)(profile)
     with replacing(path.parent) as files:
@@ -200,7 +202,7 @@ def writer(
     file: Path, *, format: str | None = None, encoding: str | None = None
 ) -> Callable[[Profile], dict[str, Content]]:
     """Find what makes a profile's files, by their names, in the format that a file shall have."""
-    form = FORMATS.get(format) if format is not None else _by_ending(file)
+    form = FORMATS.get(spelt(format, FORMATS) or "") if format is not None else _by_ending(file)
     written = [other for other in FORMATS.values() if other.made]
     if form is None and format is not None:
         known = ", ".join(other.name for other in written)
@@ -288,9 +290,11 @@ def _cropped_rims(raw: RawProfile, *, sides: bool) -> RawProfile:
         raise ValueError("has no station with an elevation on every path")
     first, last = int(kept[0]), int(kept[-1]) + 1
     if (left, right) != (0, missing.shape[1]):
-        steps.append(f"left out {left} long sections at the left rim and {missing.shape[1] - right} at the right")
+        steps.append(
+            f"left out {count(left, 'long section')} at the left rim and {missing.shape[1] - right} at the right"
+        )
     if (first, last) != (0, len(missing)):
-        steps.append(f"left out {first} stations at the beginning and {len(missing) - last} at the end")
+        steps.append(f"left out {count(first, 'station')} at the beginning and {len(missing) - last} at the end")
     place = raw.place
     return raw._replace(
         stations=raw.stations[first:last],
@@ -323,10 +327,10 @@ def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
     first, longest = gaps[0], max(gaps, key=lambda gap: gap.length)
     if repair_gaps is None:
         raise ValueError(
-            f"{raw.place(first.first)}: no elevation {_at(raw, first)}; in all {missing} elevations are "
-            f"missing in {len(gaps)} gaps, the longest {_long(longest)} {_at(raw, longest)}. "
-            f"{option('repair_gaps')} fills gaps up to a length, {option('crop_rims')} leaves out the rims of a "
-            "grid"
+            f"{raw.place(first.first)}: no elevation {_at(raw, first)}; in all "
+            f"{count(missing, 'elevation is', 'elevations are')} missing in {count(len(gaps), 'gap')}, the longest "
+            f"{_long(longest)} {_at(raw, longest)}. {option('repair_gaps')} fills gaps up to a length, "
+            f"{option('crop_rims')} leaves out the rims of a grid"
         )
     if longest.length > repair_gaps:
         raise ValueError(
@@ -339,7 +343,8 @@ def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
         there = ~np.isnan(column)
         column[~there] = np.interp(raw.stations[~there], raw.stations[there], column[there])
     done = (
-        f"filled {missing} missing elevations in {len(gaps)} gaps by straight lines, the longest {_long(longest)} "
+        f"filled {count(missing, 'missing elevation')} in {count(len(gaps), 'gap')} by straight lines, the longest "
+        f"{_long(longest)} "
         f"{_at(raw, longest)}"
     )
     return raw._replace(elevations=elevations, steps=(*raw.steps, done))
@@ -385,5 +390,5 @@ def _sentence(name: str, profile: Profile, raw: RawProfile) -> str:
     spacing = f"{step:.4g} m" if step is not None else f"{steps.min():.4g}–{steps.max():.4g} m"
     return (
         f"{name}: {stations.size} stations from {stations[0]:g} m to {stations[-1]:g} m every {spacing}, "
-        f"{profile.paths} path(s), elevation {elevation.min():g} to {elevation.max():g} m, {raw.understood}"
+        f"{count(profile.paths, 'path')}, elevation {elevation.min():g} to {elevation.max():g} m, {raw.understood}"
     )

@@ -10,7 +10,7 @@ from typing import Any
 from movingfrf._basics.checks import ParameterError, checking
 from movingfrf._basics.documented import documented
 from movingfrf.roughness.files import ReadProfile, read_profile
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps import (
     cropped,
     detrended,
@@ -87,6 +87,7 @@ def prepared(profile: Profile, **keys: Any) -> Profile:
     ValueError
         If a step does, or if the profile is to be repeated and mirrored as well.
     """
+    require_profile(profile)
     asked = {key: value for key, value in vars(Preparation(**keys)).items() if value is not None}
     with checking() as check:
         for step in STEPS:

@@ -10,15 +10,17 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.door import mistaken
 from movingfrf._basics.spline import Piecewise, cubic
+from movingfrf._basics.values import Value, brief
 
 # Relative slack in the comparison of lengths that were computed in different ways: more than their rounding, and
 # less than a step, of which a profile that fits into the memory has a thousand million at the most [1e-12 to 1e-9].
 SLACK = 1e-9
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Profile:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Profile(Value):
     """Elevation of a road over distance; between its samples a cubic spline.
 
     Parameters
@@ -84,6 +86,20 @@ class Profile:
                 if across.size != count:
                     check.refuse("across", f"must have one position [m] for each path, {count}, got {across.size}")
             check.keep("steps", tuple(self.steps))
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell stations, elevation, where it comes from and what was done to it, in words."""
+        stations, elevation, step = self.stations, self.columns, self.even_step()
+        apart = "uneven" if step is None else f"{step:.6g} m apart"
+        places = "" if self.across is None else f", at {', '.join(f'{place:+g}' for place in self.across)} m"
+        lines = [
+            ("stations", f"{stations.size} from {stations[0]:.6g} m to {stations[-1]:.6g} m, {apart}"),
+            ("elevation", f"{elevation.min():.4g} m to {elevation.max():.4g} m"),
+            ("paths", "the same for all" if self.same_across else f"{self.paths}{places}"),
+            ("source", brief(self.source)),
+            ("steps", brief("; ".join(self.steps))),
+        ]
+        return [(name, words) for name, words in lines if words]
 
     @property
     def stations(self) -> FloatArray:
@@ -183,3 +199,23 @@ class Profile:
         """
         elevation = np.asarray(self.elevation)
         return cubic(self.stations, elevation if elevation.ndim == 1 else elevation[:, path])
+
+
+def require_profile(profile: object, name: str = "profile") -> None:
+    """Refuse what is no profile.
+
+    Parameters
+    ----------
+    profile : object
+        What was given.
+    name : str
+        Name of the argument.
+
+    Raises
+    ------
+    ValueError
+        If it is no `Profile`.
+    """
+    with checking() as check:
+        if not isinstance(profile, Profile):
+            check.refuse(name, mistaken("profile", profile))

@@ -13,7 +13,7 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require
 from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf.roughness.profile import SLACK, Profile
 from movingfrf.roughness.spectra.coherence import Coherence, presumed
-from movingfrf.roughness.spectra.spectrum import Spectrum
+from movingfrf.roughness.spectra.spectrum import Spectrum, require_spectrum
 
 
 class Harmonics(NamedTuple):
@@ -53,8 +53,8 @@ Draw = Callable[[np.random.Generator, int, Harmonics], ComplexArray]
 
 def realise(
     spectrum: Spectrum,
-    *,
     length: float,
+    *,
     step: float | None = None,
     seed: int | Sequence[int] = 0,
     start: float = 0.0,
@@ -119,6 +119,7 @@ def realise(
     >>> realise(mf.IsoRoad.of_class("A"), length=100.0, seed=1, across=[0.75, -0.75]).paths
     2
     """
+    require_spectrum(spectrum)
     with checking() as check:
         ask = _asked(check, spectrum, length, step, seed, start, covering, across, coherence)
     return _realised(ask, _phases, f"{spectrum}, seed {ask.said_seed}")
@@ -201,6 +202,7 @@ def realise_laplace(
     >>> road.stations[-1].item()
     1000.0
     """
+    require_spectrum(spectrum)
     with checking() as check:
         ask = _asked(check, spectrum, length, step, seed, start, covering, across, coherence)
         # Nearer to a Gaussian road the gamma distribution has no meaningful shape.

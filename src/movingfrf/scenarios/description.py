@@ -21,6 +21,7 @@ from movingfrf.roughness.fitting import fit_iso
 from movingfrf.roughness.road import Road
 from movingfrf.roughness.straight import mean_slope, straight
 from movingfrf.scenarios.scenario import COUPLED_BY, NEWMARK, Drive, Passage, Scenario
+from movingfrf.scenarios.unusual import USUAL
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.modes import Mode, vehicle_modes
@@ -28,18 +29,6 @@ from movingfrf.vehicles.vehicle import Vehicle
 
 # A section: its heading and its lines of name and value.
 Section = tuple[str, list[tuple[str, str]]]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Unusual:
-    """What of a vehicle is worth a remark [conventions]."""
-
-    damping: float = 0.02  # share of critical damping below which a vibration takes long to settle
-    undamped: float = 1e-9  # share of critical damping that is rounding, of either sign
-    footprint: float = 1.0  # length beyond that of any tyre [m]
-
-
-UNUSUAL = Unusual()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,6 +87,7 @@ def described(scenario: Scenario) -> Description:
             found += [finding.message for finding in (*paths, *graded(*seen.slopes))]
         case Passage() as passage:
             sections.append(("Loads", _loads(passage)))
+    found = [*(finding.message for finding in scenario.case.unusual), *found]
     return Description(sections=[*sections, ("Run", _run(scenario.case))], remarks=found, refusal=refusal)
 
 
@@ -110,19 +100,16 @@ def _remarks_on_vehicle(vehicle: Vehicle, journey: Journey) -> list[str]:
             f"the vehicle vibrates at up to {fastest:.4g} Hz, but a record in steps of {journey.time_step:g} s "
             f"shows only what is below {nyquist:.4g} Hz"
         )
-    if frequencies.size and ratios.min() < UNUSUAL.damping:
+    if frequencies.size and ratios.min() < USUAL.damping:
         found.append(
             f"a vibration of the vehicle at {frequencies[ratios.argmin()]:.3g} Hz "
             + (
                 "is undamped: it does not settle"
-                if abs(ratios.min()) < UNUSUAL.undamped
+                if abs(ratios.min()) < USUAL.undamped
                 else f"has {100 * ratios.min():.2g} % of critical damping: it takes long to settle, and its size "
                 "depends on that number"
             )
         )
-    longest = max((contact.footprint for contact in vehicle.contacts), default=0.0)
-    if longest > UNUSUAL.footprint:
-        found.append(f"a footprint of {longest:g} m is longer than that of any tyre")
     return found
 
 
@@ -168,20 +155,13 @@ def described_vehicle(vehicle: Vehicle) -> list[Section]:
         (
             "Vehicle",
             [
-                ("degrees of freedom", _enumerated(vehicle.dof_names)),
+                ("degrees of freedom", wording.enumerated(vehicle.dof_names)),
                 ("weight", f"{vehicle.static_loads.sum() / 1e3:.2f} kN"),
             ],
         ),
         ("Contacts", _contacts(vehicle, vehicle.static_loads)),
         ("Vibrations on a rigid road", _vibrations(vehicle)),
     ]
-
-
-def _enumerated(words: Sequence[str], most: int = 14) -> str:
-    """Words with commas between them, at most so many: the middle ones are left out."""
-    if len(words) <= most:
-        return ", ".join(words)
-    return f"{', '.join(words[: most - 2])}, …, {words[-1]} ({len(words)} in all)"
 
 
 def _contacts(
@@ -229,7 +209,7 @@ def _vibrations(vehicle: Vehicle, same: float = 1e-6) -> list[tuple[str, str]]:
 
 
 def _damping(ratio: float) -> str:
-    return "undamped" if abs(ratio) < UNUSUAL.undamped else f"{100 * ratio:.1f} % damping"
+    return "undamped" if abs(ratio) < USUAL.undamped else f"{100 * ratio:.1f} % damping"
 
 
 def _alike(group: Sequence[Mode]) -> str:
@@ -291,7 +271,7 @@ def _run(case: Drive | Passage) -> list[tuple[str, str]]:
             channels = len(loads.positions) + len(loads.observe)
             through_time, without = NEWMARK, "none"
     lines = [
-        ("speed", f"{journey.speed:g} m/s ({3.6 * journey.speed:g} km/h)"),
+        ("speed", journey.speed_in_words),
         ("travel", f"{journey.duration:g} s over {journey.speed * journey.duration:g} m"),
         ("time steps", f"{journey.samples} of {journey.time_step:g} s"),
     ]

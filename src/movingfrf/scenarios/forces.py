@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +13,15 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.smooth import smooth_step
 from movingfrf._basics.spline import cubic
+from movingfrf._basics.values import Value
 from movingfrf.response.line import Abrupt, Given, Line
 
 # A smooth force at some times [s], or its derivative of an order up to 2 [N, N/s, N/s²].
 Smooth = Callable[[FloatArray, int], FloatArray]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class History:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class History(Value):
     """A force over time.
 
     Parameters
@@ -54,8 +56,8 @@ class History:
         return [change for change in changes if change.jumps.any()]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Loads:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Loads(Value):
     """Prescribed forces that travel along.
 
     Parameters
@@ -149,10 +151,11 @@ def constant(
     with checking() as check:
         force = check.finite("force", force, "N")
 
-    def steady(time: FloatArray, order: int) -> FloatArray:
-        return np.full_like(time, 0.0 if order else force)
+    return _switched(History(smooth=partial(_steady, force)), switch_on, switch_off, ramp)
 
-    return _switched(History(smooth=steady), switch_on, switch_off, ramp)
+
+def _steady(force: float, time: FloatArray, order: int) -> FloatArray:
+    return np.full_like(time, 0.0 if order else force)
 
 
 def harmonics(
@@ -200,16 +203,20 @@ def harmonics(
         phase = np.zeros(size.size) if phases is None else check.array("phases", phases, "rad", (size.size,))
         mean = check.finite("mean", mean, "N")
 
-    def sum_of_sines(time: FloatArray, order: int) -> FloatArray:
-        total = np.full_like(time, 0.0 if order else mean)
-        for amplitude, omega, shift in zip(size, 2 * np.pi * at, phase, strict=True):
-            # Each derivative is a quarter of a period ahead.
-            total += amplitude * omega**order * np.sin(omega * time + (shift + 0.5 * np.pi * order))
-        return total
-
+    sines = np.stack([size, 2 * np.pi * at, phase], axis=1)
     highest = np.abs(at).max(initial=0.0)
     finest = 0.1 / highest if highest else np.inf  # a tenth of a period
-    return _switched(History(smooth=sum_of_sines, finest=finest), switch_on, switch_off, ramp)
+    return _switched(
+        History(smooth=partial(_sum_of_sines, mean, sines), finest=finest), switch_on, switch_off, ramp
+    )
+
+
+def _sum_of_sines(mean: float, sines: FloatArray, time: FloatArray, order: int) -> FloatArray:
+    total = np.full_like(time, 0.0 if order else mean)
+    for amplitude, omega, shift in sines:
+        # Each derivative is a quarter of a period ahead.
+        total += amplitude * omega**order * np.sin(omega * time + (shift + 0.5 * np.pi * order))
+    return total
 
 
 def random_sum(
@@ -309,9 +316,8 @@ def tabulated(*, file: Path, column: int = 1) -> History:
         column = check.whole("column", column, least=1)
         if not check.faults and column > forces.shape[1]:
             check.refuse("column", f"must be at most {forces.shape[1]}, the columns of {file}, got {column}")
-    spline = cubic(time, forces[:, column - 1])
     return History(
-        smooth=spline,
+        smooth=cubic(time, forces[:, column - 1]),
         begins=float(time[0]),
         ends=float(np.nextafter(time[-1], np.inf)),  # the last row counts
         finest=float(np.diff(time).min()),
@@ -332,11 +338,13 @@ def _switched(history: History, on: float, off: float | None, ramp: float) -> Hi
     if not ramp:
         return within
 
-    def ramped(time: FloatArray, order: int) -> FloatArray:
-        share = smooth_step((time - on) / ramp)
-        if off is not None:
-            share = share * smooth_step((off - time) / ramp)
-        # Derivatives are asked for where it begins and ends: there they are zero.
-        return history.smooth(time, order) * share
-
+    ramped = partial(_ramped, history.smooth, on, off, ramp)
     return replace(within, smooth=ramped, finest=min(history.finest, 0.25 * ramp))
+
+
+def _ramped(smooth: Smooth, on: float, off: float | None, ramp: float, time: FloatArray, order: int) -> FloatArray:
+    share = smooth_step((time - on) / ramp)
+    if off is not None:
+        share = share * smooth_step((off - time) / ramp)
+    # Derivatives are asked for where it begins and ends: there they are zero.
+    return smooth(time, order) * share

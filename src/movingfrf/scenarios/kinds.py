@@ -6,9 +6,11 @@ function makes itself. A new kind is one line in its family; an argument whose t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
+from movingfrf._basics.checks import ParameterError, checking
 from movingfrf.guideways.beams import Beam, EulerBernoulliBeam, TimoshenkoBeam
 from movingfrf.guideways.files import read_sampled_guideway
 from movingfrf.guideways.foundations import Foundation, OnMass, ShearLayer, Spring
@@ -23,7 +25,7 @@ from movingfrf.roughness.road import Road
 from movingfrf.roughness.spectra.coherence import Coherence, ExponentialCoherence, IsotropicCoherence
 from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.scenarios import forces
-from movingfrf.scenarios.kind import Family, Kind, family, keys_of
+from movingfrf.scenarios.kind import Family, Kind, family, keys_of, summary
 from movingfrf.scenarios.roads import ROADS, SPECTRA, Way
 from movingfrf.stepping.finite_plate import finite_plate
 from movingfrf.stepping.finite_track import finite_track
@@ -113,10 +115,43 @@ TABLES: Mapping[Any, Family] = {
     )
 }
 
+
+def journey(*, speed: float | None = None, speed_kmh: float | None = None, **given: Any) -> Journey:
+    """How a vehicle, or loads, travel; the speed in one of two units."""
+    with checking() as check:
+        if speed is not None and speed_kmh is not None:
+            check.refuse("speed", "and speed_kmh exclude each other: one of the two [m/s, km/h]")
+        elif speed is None and speed_kmh is None:
+            check.refuse("speed", "is missing: speed [m/s] or speed_kmh [km/h]")
+        elif speed_kmh is not None:
+            speed = check.positive("speed_kmh", speed_kmh, "km/h") / 3.6
+        try:
+            # Any speed will do to find what else is wrong.
+            made = Journey(speed=1.0 if check.faults else speed, in_kmh=speed_kmh is not None, **given)  # type: ignore[arg-type]
+        except ParameterError as error:
+            check.faults += error.faults
+    return made
+
+
+def travelling(*, without: Sequence[str] = ()) -> Kind:
+    """Make the kind of a [run] table."""
+    speed, *others = keys_of(Journey, without=["in_kmh", *without])
+    in_kmh = replace(speed, name="speed_kmh", words="The same [km/h], in its place.")
+    both = (replace(key, default=None) for key in (speed, in_kmh))
+    return Kind(
+        name="journey", make=journey, keys=(*both, *others), words=summary(Journey), either=("speed", "speed_kmh")
+    )
+
+
 # The tables of a scenario with a vehicle, and of one with prescribed loads, which have no profile to start on.
-DRIVE = {"guideway": GUIDEWAY, "vehicle": VEHICLE, "roughness": ROUGHNESS, "run": family("run", Journey, Journey)}
+DRIVE = {
+    "guideway": GUIDEWAY,
+    "vehicle": VEHICLE,
+    "roughness": ROUGHNESS,
+    "run": family("run", Journey, travelling()),
+}
 PASSAGE = {
     "guideway": GUIDEWAY,
     "loads": LOADS,
-    "run": family("run", Journey, Kind.of(Journey, without=["start", "blend"])),
+    "run": family("run", Journey, travelling(without=["start", "blend"])),
 }

@@ -10,15 +10,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import Fault, nearest, shown
+from movingfrf._basics.checks import Fault, Finding, nearest, shown, spelt, warned
 from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.values import Value, brief
+from movingfrf._basics.wording import count, enumerated
 from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.response.moving_loads import Forces, carried
 from movingfrf.response.simulation import driven
 from movingfrf.response.system import Prescribed
+from movingfrf.results.findings import with_more
 from movingfrf.roughness.road import Road
 from movingfrf.scenarios.forces import Loads
 from movingfrf.scenarios.stepped import EXCHANGED, Division, coupled, elements, loaded, require_endless
+from movingfrf.scenarios.unusual import unusual
 from movingfrf.stepping.exchange import SOLVED
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.vehicles.journey import Journey
@@ -41,9 +45,8 @@ class ScenarioError(ValueError):
 
     def __init__(self, source: str, faults: Sequence[Fault]) -> None:
         self.faults = tuple(faults)
-        count = "1 fault" if len(self.faults) == 1 else f"{len(self.faults)} faults"
         lines = [f"  {fault.name} {fault.message}".rstrip() for fault in self.faults]
-        super().__init__("\n".join([f"{source}: {count}", *lines]))
+        super().__init__("\n".join([f"{source}: {count(len(self.faults), 'fault')}", *lines]))
 
 
 # What computes a case unless something else is asked for; the methods that step a drive, and how each finds contact
@@ -53,8 +56,8 @@ COUPLED_BY = {"cdfm": SOLVED, "sim": EXCHANGED}
 NEWMARK = "newmark"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Drive:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Drive(Value):
     """A vehicle on a rough road.
 
     Parameters
@@ -73,6 +76,22 @@ class Drive:
     vehicle: Vehicle
     road: Road
     journey: Journey
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell guideway, vehicle, road and journey, in words."""
+        (_, dofs), (_, contacts), (_, weight) = self.vehicle.told()
+        return [
+            ("guideway", brief(self.guideway)),
+            ("vehicle", f"{weight}; {dofs}"),
+            ("contacts", contacts),
+            ("road", brief(self.road.description)),
+            ("journey", f"{self.journey.duration:g} s at {self.journey.speed_in_words}"),
+        ]
+
+    @property
+    def unusual(self) -> list[Finding]:
+        """What of it lies outside what is usual."""
+        return unusual(self.guideway, self.journey, vehicle=self.vehicle, profile=self.road.profile)
 
     @property
     def places(self) -> FloatArray:
@@ -107,7 +126,7 @@ class Drive:
         SolveError
             If the case has no meaningful answer.
         """
-        _require_method(method, (MOVING_FRF, *COUPLED_BY), "a vehicle", self.guideway)
+        method = _known_method(method, (MOVING_FRF, *COUPLED_BY), "a vehicle", self.guideway)
         if method in COUPLED_BY:
             result = coupled(
                 (self.guideway, self.vehicle, self.road.profile),
@@ -123,8 +142,8 @@ class Drive:
         return result.assign_attrs(road=self.road.description, **spectrum)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Passage:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Passage(Value):
     """Prescribed loads that travel along a road.
 
     Parameters
@@ -140,6 +159,20 @@ class Passage:
     guideway: Guideway | FiniteGuideway
     loads: Loads
     journey: Journey
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell guideway, loads and journey, in words."""
+        return [
+            ("guideway", brief(self.guideway)),
+            ("loads", f"at {enumerated([f'{place:g}' for place in self.loads.positions], 8)} m"),
+            ("observed", f"at {enumerated([f'{place:g}' for place in self.loads.observe], 8)} m"),
+            ("journey", f"{self.journey.duration:g} s at {self.journey.speed_in_words}"),
+        ]
+
+    @property
+    def unusual(self) -> list[Finding]:
+        """What of it lies outside what is usual."""
+        return unusual(self.guideway, self.journey, forces=self.forces)
 
     @property
     def places(self) -> FloatArray:
@@ -179,7 +212,7 @@ class Passage:
         SolveError
             If the case has no meaningful answer.
         """
-        _require_method(method, (MOVING_FRF, NEWMARK), "prescribed loads", self.guideway)
+        method = _known_method(method, (MOVING_FRF, NEWMARK), "prescribed loads", self.guideway)
         if method == NEWMARK:
             return loaded(
                 self.guideway,
@@ -204,8 +237,8 @@ class Passage:
         )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Scenario:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Scenario(Value):
     """A checked scenario, ready to run: what a user wrote, and the case that it says.
 
     Parameters
@@ -224,6 +257,10 @@ class Scenario:
     text: str
     case: Drive | Passage
     folder: Path = Path()
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell name and case, in words."""
+        return [("name", self.name), *self.case.told()]
 
     @property
     def guideway(self) -> Guideway | FiniteGuideway:
@@ -264,7 +301,9 @@ class Scenario:
         SolveError
             If the case has no meaningful answer.
         """
-        return self.case.run(progress, method).assign_attrs(scenario=self.text)
+        result = self.case.run(progress, method)
+        findings = with_more(result.attrs["findings"], warned(self.case.unusual))
+        return result.assign_attrs(scenario=self.text, findings=findings, **self.journey.given_speed)
 
 
 def shortened(scenario: Scenario, duration: float) -> Scenario:
@@ -332,9 +371,11 @@ def passage_of(scenario: Scenario) -> Passage:
     raise ValueError(f"{scenario.name}: a scenario with prescribed loads is wanted, it has a vehicle")
 
 
-def _require_method(method: str, known: tuple[str, ...], what: str, guideway: Guideway | FiniteGuideway) -> None:
-    if method not in known:
+def _known_method(method: str, known: tuple[str, ...], what: str, guideway: Guideway | FiniteGuideway) -> str:
+    found = spelt(method, known)
+    if found is None:
         if isinstance(guideway, FiniteGuideway):
             known, what = tuple(one for one in known if one != MOVING_FRF), f"{what} on a finite road"
         hint = "" if method in (*COUPLED_BY, NEWMARK) else nearest(str(method), known)
         raise ValueError(f"method must be one of {', '.join(known)} with {what}, got {shown(method)}{hint}")
+    return found

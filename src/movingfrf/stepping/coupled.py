@@ -15,14 +15,14 @@ from movingfrf._basics.checks import SolveError, checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.results.labels import attributes, labelled
 from movingfrf.roughness.excitation import Touch, excite
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.stepping.exchange import SOLVED, Iteration
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.marching import March, State
 from movingfrf.stepping.requirements import (
     require_across,
     require_apart,
-    require_kinds,
+    require_kind,
     require_on_guideway,
     require_slopes,
     require_stable_scheme,
@@ -30,7 +30,7 @@ from movingfrf.stepping.requirements import (
 from movingfrf.stepping.schemes import Scheme, scheme_named
 from movingfrf.stepping.tie import no_vehicle, stiffness_at_rest, tie_of
 from movingfrf.vehicles.journey import Journey
-from movingfrf.vehicles.vehicle import Vehicle
+from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -296,10 +296,9 @@ def prepared_journey(
         Steps through the journey and returns the result of `cdfm` or `sim`.
     """
     guideway, vehicle, profile = parts
-    with checking() as check:
-        require_kinds(
-            check, road=(guideway, FiniteGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile)
-        )
+    require_kind("road", guideway, FiniteGuideway, "finite road")
+    require_vehicle(vehicle)
+    require_profile(profile)
     with checking() as check:
         run_in = check.not_negative("run_in", run_in, "s")
         row = scheme_named(check, scheme)
@@ -378,7 +377,7 @@ def prepared_journey(
             iterations=trace.iterations,
             findings=[
                 *steady.findings,
-                *find.contact_lost(force + steady.load, journey.time_step),
+                *find.contact_lost(force + steady.load, journey.time_step, vehicle.standing),
                 *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
                 *find.graded(*seen.slopes),
             ],

@@ -15,15 +15,15 @@ from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.results.labels import attributes, labelled
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.stepping.coupled import seen_in_time
 from movingfrf.stepping.half_step import HalfStep
 from movingfrf.stepping.marching import STRIDE, numba_is_there
-from movingfrf.stepping.requirements import require_kinds
+from movingfrf.stepping.requirements import require_kind
 from movingfrf.stepping.schemes import SCHEMES
 from movingfrf.stepping.tie import stiffness_at_rest, tie_of
 from movingfrf.vehicles.journey import Journey
-from movingfrf.vehicles.vehicle import Vehicle
+from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -140,8 +140,9 @@ def convolved(
         As for `duhamel`.
     """
     time_step = journey.time_step
-    with checking() as check:
-        require_kinds(check, road=(road, SampledGuideway), vehicle=(vehicle, Vehicle), profile=(profile, Profile))
+    require_kind("road", road, SampledGuideway, "record")
+    require_vehicle(vehicle)
+    require_profile(profile)
     road.require_speed(journey.speed)
     positions = vehicle.positions
     columns = road.columns(**vehicle.offsets)
@@ -204,7 +205,7 @@ def convolved(
         **seen.settings,
         critical_speed=road.critical_speed,
         findings=[
-            *find.contact_lost(force + load, time_step),
+            *find.contact_lost(force + load, time_step, vehicle.standing),
             *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
             *find.graded(*seen.slopes),
             *road.findings,
@@ -266,8 +267,7 @@ def duhamel_loads(
         time_step = check.positive("time_step", time_step, "s")
         if not check.faults and (len(forces) < 2 or not at.size or not points.size):
             check.refuse("force", "must have at least two samples, one load and one observation point")
-    with checking() as check:
-        require_kinds(check, road=(road, SampledGuideway))
+    require_kind("road", road, SampledGuideway, "record")
     road.require_speed(speed)
     columns = road.columns(points[:, None] - at)
     whole, _, first = weights(road, time_step)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import Checks, checking, real_numbers, shown
+from movingfrf._basics.values import Value
 from movingfrf.stepping.factors import is_definite
 
 # Positions [m], order of the derivative and, on a guideway with a width, places across [m] → one row per position,
@@ -36,8 +37,8 @@ class Mesh(NamedTuple):
         return len(self.number) // 2 - 1
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FiniteGuideway:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FiniteGuideway(Value):
     """A guideway as matrices: M ü + C u̇ + K u = Σ N(x_j)ᵀ F_j, its deflection at x being N(x) u.
 
     From `finite_track`, or from any finite-element program: export three matrices and say how a position on the
@@ -122,6 +123,18 @@ class FiniteGuideway:
         with checking() as check:
             _check_definite(check, self)
             _check_rows(check, self)
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell where it lies and how it is divided, in words."""
+        first, last = self.interval
+        lines = [
+            ("kind", f"finite road, {'which travels along' if self.travels else 'which stands still'}"),
+            ("length", f"{last - first:g} m, from {first:g} m to {last:g} m"),
+            ("width", f"{self.width:g} m" if self.width else ""),
+            ("elements", f"of {self.spacing:g} m" if self.spacing else ""),
+            ("unknowns", f"{self.dofs}"),
+        ]
+        return [(name, words) for name, words in lines if words]
 
     @property
     def dofs(self) -> int:

@@ -12,7 +12,9 @@ import scipy.sparse as sparse
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking, shown
+from movingfrf._basics.door import instead_of
 from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import EulerBernoulliBeam
 from movingfrf.guideways.foundations import ShearLayer, Spring
 from movingfrf.guideways.sampled import SampledGuideway
@@ -27,7 +29,7 @@ from movingfrf.stepping.finite_track import (
     require_stretch,
 )
 from movingfrf.stepping.impulse import CANCELLING, PINNED, moving_impulse_response
-from movingfrf.vehicles.vehicle import Vehicle
+from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 # Unknowns at a node: w, ∂w/∂x, ∂w/∂y, ∂²w/∂x∂y.
 NODAL = 4
@@ -42,8 +44,8 @@ class Stiffnesses(NamedTuple):
     twist: float
 
 
-@dataclass(frozen=True, slots=True)
-class PlateRows:
+@dataclass(frozen=True, slots=True, eq=False)
+class PlateRows(Value):
     """Interpolation on rectangles of cubic functions along times cubic functions across (Bogner, Fox, Schmit)."""
 
     first: FloatArray  # (2,) position of the first node, along and across [m]
@@ -155,7 +157,7 @@ def finite_plate(
             check.refuse(
                 "track",
                 "must be an Euler–Bernoulli beam on springs or a shear layer to be spread over its width, got "
-                f"{shown(track)}",
+                f"{shown(track)}{instead_of('track', track)}",
             )
         width = check.positive("width", width, "m")
         count_across = check.whole("across", across, least=1)
@@ -213,7 +215,7 @@ def finite_plate(
             last=last,
             poisson=poisson,
             transverse=transverse,
-            ends=ends,
+            ends=both,
             absorbing=length,
             band=band,
             travels=travels,
@@ -281,6 +283,7 @@ def struck_plate(
     ValidityWarning
         As `moving_impulse_response`.
     """
+    require_vehicle(vehicle)
     recipe = PINNED if plain else CANCELLING
     half = 0.5 * recipe.length
     guideways = [

@@ -12,8 +12,10 @@ import scipy.sparse as sparse
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf._basics.checks import Checks, checking, shown, spelt
+from movingfrf._basics.door import instead_of
 from movingfrf._basics.smooth import smooth_step
+from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import EulerBernoulliBeam
 from movingfrf.guideways.foundations import Foundation, OnMass, ShearLayer, Spring
 from movingfrf.guideways.track import Track
@@ -54,8 +56,8 @@ class Absorption:
 ABSORPTION = Absorption()
 
 
-@dataclass(frozen=True, slots=True)
-class CubicRows:
+@dataclass(frozen=True, slots=True, eq=False)
+class CubicRows(Value):
     """Interpolation on a chain of cubic elements."""
 
     mesh: Mesh
@@ -160,7 +162,11 @@ def finite_track(
     """
     with checking() as check:
         if not isinstance(track, Track) or not isinstance(track.beam, EulerBernoulliBeam):
-            check.refuse("track", f"must have an Euler–Bernoulli beam to be cut into elements, got {shown(track)}")
+            check.refuse(
+                "track",
+                f"must have an Euler–Bernoulli beam to be cut into elements, got {shown(track)}"
+                f"{instead_of('track', track)}",
+            )
         first, last = check.finite("first", first, "m"), check.finite("last", last, "m")
         element = check.positive("element", element, "m")
         both, length = require_stretch(check, (first, last), element, ends, absorbing, travels)
@@ -214,7 +220,7 @@ def finite_track(
             track=track,
             first=first,
             last=last,
-            ends=ends,
+            ends=both,
             absorbing=length,
             band=band,
             travels=travels,
@@ -257,8 +263,8 @@ def require_stretch(
     first, last = interval
     usual = min(ABSORPTION.length, max(last - first, 0.0) / 3)
     length = check.not_negative("absorbing", usual if absorbing is None else absorbing, "m")
-    both = (ends, ends) if isinstance(ends, str) else tuple(ends)
-    if len(both) != 2 or not all(isinstance(end, str) and end in ENDS for end in both):
+    both = tuple(spelt(end, ENDS) for end in ((ends, ends) if isinstance(ends, str) else ends))
+    if len(both) != 2 or None in both:
         check.refuse("ends", f"must be one or two of {', '.join(ENDS)}, got {shown(ends)}")
     following = {end for end, kind in ENDS.items() if kind.follows}
     if travels and not set(both) <= following:

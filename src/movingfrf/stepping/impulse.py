@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
+from movingfrf._basics.door import given, instead_of
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.guideways.track import Track
@@ -156,7 +157,7 @@ def moving_impulse_response(
     >>> abs(struck.moving_frf(0.0, 10.0, [0.0]) / track.moving_frf(0.0, 10.0, [0.0])).round(2).tolist()
     [1.0]
     """
-    several = [roads] if isinstance(roads, FiniteGuideway) else list(roads)
+    several: list[Any] = list(roads) if isinstance(roads, (list, tuple)) else [roads]
     with checking() as check:
         at = check.array("offsets", offsets, "m", (None,))
         beside, sources = (
@@ -173,7 +174,9 @@ def moving_impulse_response(
         if not several or not all(
             isinstance(guideway, FiniteGuideway) and not guideway.travels for guideway in several
         ):
-            check.refuse("roads", "must be one or more roads that stand still")
+            other = next((one for one in several if not isinstance(one, FiniteGuideway)), None)
+            hint = "" if other is None else f", got {given(other)}{instead_of('finite road', other)}"
+            check.refuse("roads", f"must be one or more roads that stand still{hint}")
         if not check.faults and not at.size:
             check.refuse("offsets", "must hold at least one offset [m]")
         if not check.faults and band * time_step > 0.25:

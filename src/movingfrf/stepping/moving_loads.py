@@ -13,7 +13,7 @@ from movingfrf._basics.progress import Progress, silent
 from movingfrf.results.labels import attributes, labelled
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.marching import March
-from movingfrf.stepping.requirements import require_kinds, require_on_guideway, require_stable_scheme
+from movingfrf.stepping.requirements import require_kind, require_on_guideway, require_stable_scheme
 from movingfrf.stepping.schemes import Scheme, scheme_named
 from movingfrf.stepping.tie import no_vehicle
 
@@ -83,8 +83,7 @@ def newmark_loads(
     >>> round(1e3 * result.deflection[-1, 0].item(), 2)  # mm
     3.74
     """
-    with checking() as check:
-        require_kinds(check, road=(road, FiniteGuideway))
+    require_kind("road", road, FiniteGuideway, "finite road")
     with checking() as check:
         at = check.array("positions", positions, "m", (None,))
         forces = check.array("force", force, "N", (None, at.size))

@@ -6,31 +6,36 @@ import numpy as np
 from scipy.linalg import eigvalsh
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import Checks
+from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.door import mistaken
 from movingfrf.stepping.factors import solver
 from movingfrf.stepping.finite_guideway import ELEMENT_ROUNDING, FiniteGuideway
 from movingfrf.stepping.schemes import Scheme
 from movingfrf.vehicles.vehicle import Vehicle
 
 
-def require_kinds(check: Checks, **given: tuple[object, type]) -> None:
-    """Refuse arguments of another kind, and say what makes the right one.
+def require_kind(name: str, value: object, kind: type, wanted: str) -> None:
+    """Refuse an argument of another kind.
 
     Parameters
     ----------
-    check : Checks
-        Collects the faults.
-    given : tuple of object and type
-        By the argument's name, what was given and what it must be.
+    name : str
+        Name of the argument.
+    value : object
+        What was given.
+    kind : type
+        What it must be.
+    wanted : str
+        The same in words, a key of `wanted_kinds` in `_basics/door.py`.
+
+    Raises
+    ------
+    ValueError
+        If it is something else.
     """
-    makers = {
-        "FiniteGuideway": ", which finite_track cuts out of a track",
-        "SampledGuideway": ", which struck_track makes of a track",
-    }
-    for name, (value, kind) in given.items():
+    with checking() as check:
         if not isinstance(value, kind):
-            hint = makers.get(kind.__name__, "")
-            check.refuse(name, f"must be a {kind.__name__}{hint}, got a {type(value).__name__}")
+            check.refuse(name, mistaken(wanted, value))
 
 
 def require_on_guideway(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from numbers import Real
 from typing import Any, NamedTuple
 
-from movingfrf._basics.checks import Checks, plain, shown
+from movingfrf._basics.checks import Checks, plain, shown, spelt
 
 
 class Rule(NamedTuple):
@@ -98,7 +98,7 @@ def scheme_named(check: Checks, given: str | Scheme) -> Scheme:
     numbers = [plain(number) for number in given] if isinstance(given, tuple) else []
     if 2 <= len(numbers) <= 4 and all(isinstance(number, Real) for number in numbers):
         return Scheme(*map(float, numbers))
-    if not isinstance(given, str) or given not in SCHEMES:
+    name = spelt(given, SCHEMES)
+    if name is None:
         check.refuse("scheme", f"must be a Scheme or one of {', '.join(SCHEMES)}, got {shown(given)}")
-        return SCHEMES["average_acceleration"]
-    return SCHEMES[given]
+    return SCHEMES[name or "average_acceleration"]

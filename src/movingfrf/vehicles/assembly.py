@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 
@@ -84,7 +84,7 @@ class Body:
         return [1.0, *levers]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Suspension:
     """A spring and a dashpot side by side, upright between two bodies.
 
@@ -109,6 +109,7 @@ class Suspension:
 
     upper: str
     lower: str
+    _: KW_ONLY
     stiffness: float
     damping: float = 0.0
     position: float = 0.0
@@ -127,7 +128,7 @@ class Suspension:
                 check.refuse("stiffness", "or damping must be positive, got 0 N/m and 0 N s/m")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Hinge:
     """A joint at which two bodies move down together, free to pitch against each other.
 
@@ -149,6 +150,7 @@ class Hinge:
 
     first: str
     second: str
+    _: KW_ONLY
     position: float
     rolls: bool = False
 
@@ -161,8 +163,8 @@ class Hinge:
 
 
 def assemble(
-    *,
     bodies: Sequence[Body],
+    *,
     suspensions: Sequence[Suspension] = (),
     hinges: Sequence[Hinge] = (),
     contacts: Sequence[Contact],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from movingfrf._basics.checks import checking, nearest, shown
+from movingfrf._basics.checks import checking
 from movingfrf.vehicles.cars import full_car, half_car, quarter_car
 from movingfrf.vehicles.rail import carriage
 from movingfrf.vehicles.trucks import Axle, Unit, truck
@@ -212,7 +212,7 @@ CATALOGUE: dict[str, Entry] = {
 }
 
 
-def catalogue(*, name: str) -> Vehicle:
+def catalogue(name: str) -> Vehicle:
     """Take a vehicle from the catalogue; `movingfrf vehicles` lists and describes them.
 
     Parameters
@@ -232,11 +232,9 @@ def catalogue(*, name: str) -> Vehicle:
 
     Examples
     --------
-    >>> catalogue(name="half_truck").static_loads.round().tolist()
+    >>> catalogue("half_truck").static_loads.round().tolist()
     [98400.0, 100106.0]
     """
     with checking() as check:
-        if not isinstance(name, str) or name not in CATALOGUE:
-            hint = nearest(name, CATALOGUE) if isinstance(name, str) else ""
-            check.refuse("name", f"must be one of {', '.join(CATALOGUE)}, got {shown(name)}{hint}")
+        name = check.choice("name", name, CATALOGUE)
     return CATALOGUE[name].make()

@@ -10,9 +10,10 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike
 
+from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import Checks, checking, shown
-from movingfrf.vehicles.vehicle import Vehicle
+from movingfrf.vehicles.vehicle import Vehicle, check_vehicle
 
 
 def convoy(
@@ -91,7 +92,7 @@ def convoy(
     )
 
 
-def train(*, car: Vehicle, count: int, spacing: float) -> Vehicle:
+def train(car: Vehicle, count: int, *, spacing: float) -> Vehicle:
     """Repeat a vehicle: a train of equal cars.
 
     Parameters
@@ -114,11 +115,11 @@ def train(*, car: Vehicle, count: int, spacing: float) -> Vehicle:
         If the number is not positive or the cars would overlap.
     """
     with checking() as check:
-        check.listed("car", [car], Vehicle)
+        check_vehicle(check, car, "car")
         count = check.whole("count", count, least=1)
         spacing = check.positive("spacing", spacing, "m")
     # Two dozen square matrices of all degrees of freedom, while they are joined and checked.
-    require_memory(200.0 * (count * len(car.dof_names)) ** 2, f"a train of {count} cars")
+    require_memory(200.0 * (count * len(car.dof_names)) ** 2, f"a train of {wording.count(count, 'car')}")
     return convoy([car] * count, spacing=spacing)
 
 
@@ -176,7 +177,7 @@ def seated(
     ('body', 'wheel', 'driver')
     """
     with checking() as check:
-        check.listed("vehicle", [vehicle], Vehicle)
+        check_vehicle(check, vehicle)
         driver_mass = check.positive("driver_mass", driver_mass, "kg")
         cushion_stiffness = check.positive("cushion_stiffness", cushion_stiffness, "N/m")
         cushion_damping = check.not_negative("cushion_damping", cushion_damping, "N s/m")
@@ -263,7 +264,7 @@ def on_paths(vehicle: Vehicle, paths: Sequence[int]) -> Vehicle:
     [1]
     """
     with checking() as check:
-        check.listed("vehicle", [vehicle], Vehicle)
+        check_vehicle(check, vehicle)
         if not isinstance(paths, (list, tuple)):
             check.refuse("paths", f"must be a list of whole numbers, got {shown(paths)}")
     with checking() as check:

@@ -9,10 +9,11 @@ import numpy as np
 from movingfrf._basics.arrays import NumberArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.enveloping import enveloping
+from movingfrf._basics.values import Value
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Contact:
+class Contact(Value):
     """Where and how a vehicle touches the guideway: a spring and a dashpot side by side, or rigidly.
 
     Parameters

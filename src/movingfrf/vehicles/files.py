@@ -13,7 +13,7 @@ import numpy as np
 from movingfrf._basics.array_file import Arrays, Content, read_arrays, write_arrays
 from movingfrf._basics.checks import Checks, ParameterError, checking, real_numbers
 from movingfrf.vehicles.contact import Contact
-from movingfrf.vehicles.vehicle import Vehicle
+from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,6 +88,7 @@ def write_vehicle(vehicle: Vehicle, file: str | Path) -> None:
     ValueError
         If the ending is another one.
     """
+    require_vehicle(vehicle)
     mass, damping, stiffness, contact_map = vehicle.matrices
     arrays: dict[str, Any] = {
         "mass": mass,

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.wording import in_both_units
 from movingfrf.vehicles.vehicle import Vehicle
 
 
@@ -32,6 +33,8 @@ class Journey:
         Length over which the profile sets in [m].
     solved_step : float, optional
         Step in which moving FRFs solve it [s]; None: as fine as road and system need.
+    in_kmh : bool
+        Whether the speed was given in km/h, as which it is shown first then.
 
     Raises
     ------
@@ -46,6 +49,7 @@ class Journey:
     truncation: float | None = None
     blend: float = 5.0
     solved_step: float | None = None
+    in_kmh: bool = False
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -63,6 +67,12 @@ class Journey:
                 check.refuse(
                     "duration", f"must be at least two time steps of {self.time_step:g} s, got {self.duration:g} s"
                 )
+
+    @property
+    def speed_in_words(self) -> str:
+        """The speed in both units, first in that in which it was given."""
+        first, second = in_both_units(self.speed, in_kmh=self.in_kmh)
+        return f"{first} ({second})"
 
     @property
     def samples(self) -> int:
@@ -88,6 +98,11 @@ class Journey:
     def settings(self) -> dict[str, float]:
         """What a result says of the journey, by the names of its attributes."""
         return {name: getattr(self, name) for name in ("speed", "duration", "start", "time_step", "blend")}
+
+    @property
+    def given_speed(self) -> dict[str, float]:
+        """What a result says of the speed beside it [km/h]; nothing where it was given in m/s."""
+        return {"speed_kmh": 3.6 * self.speed} if self.in_kmh else {}
 
     def interval(self, vehicle: Vehicle) -> tuple[float, float]:
         """First and last distance that a contact meets [m]."""

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.values import Value
 from movingfrf.vehicles.dynamics import state_matrix
-from movingfrf.vehicles.vehicle import Vehicle
+from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 
-class Mode(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Mode(Value):
     """One vibration of a vehicle on its contact springs, the guideway rigid."""
 
     pole: complex  # [rad/s]
@@ -55,6 +57,7 @@ def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
     >>> [mode.description for mode in vehicle_modes(car)]
     ['body 100 %', 'wheel 98 %']
     """
+    require_vehicle(vehicle)
     mobility, found = np.diag(np.linalg.inv(vehicle.matrices[0])), []
     for part in vehicle.dynamics().parts:
         if not len(part.own.constant):

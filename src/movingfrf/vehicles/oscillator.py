@@ -9,7 +9,7 @@ from movingfrf.vehicles.vehicle import Vehicle
 
 
 def sprung_mass(
-    *, mass: float, stiffness: float, damping: float = 0.0, wheel_mass: float = 0.0, footprint: float = 0.0
+    mass: float, stiffness: float, damping: float = 0.0, *, wheel_mass: float = 0.0, footprint: float = 0.0
 ) -> Vehicle:
     """One mass on a spring and a dashpot, with or without a wheel that follows the road rigidly.
 

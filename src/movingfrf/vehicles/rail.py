@@ -51,7 +51,7 @@ def hertzian_stiffness(load: float, *, wheel_radius: float, worn: bool = True) -
     return 1.5 / constant * load ** (1 / 3)
 
 
-def wheelset(*, mass: float, contact_stiffness: float = np.inf, contact_damping: float = 0.0) -> Vehicle:
+def wheelset(mass: float, *, contact_stiffness: float = np.inf, contact_damping: float = 0.0) -> Vehicle:
     """One wheelset on its own, the moving mass of the literature: degree of freedom `wheelset`.
 
     Parameters

@@ -173,7 +173,7 @@ class Unit:
 
 
 def truck(
-    *, units: Sequence[Unit], hitches: Sequence[float] = (), sides: tuple[float, float] | None = None
+    units: Sequence[Unit], hitches: Sequence[float] = (), *, sides: tuple[float, float] | None = None
 ) -> Vehicle:
     """Build a truck from its units: a rigid truck, a tractor with a semitrailer, or a longer combination.
 

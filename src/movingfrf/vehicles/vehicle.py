@@ -10,8 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.door import mistaken
 from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.values import Value
+from movingfrf._basics.wording import Standing, enumerated
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.dynamics import Dynamics, Quadratic, held, parts, split
 
@@ -37,8 +40,8 @@ class Touching(TypedDict):
     cams: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Vehicle(Remembering):
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Vehicle(Remembering, Value):
     """A linear vehicle: M z̈ + C ż + K z on its own, joined to the guideway by its contacts.
 
     Parameters
@@ -91,6 +94,19 @@ class Vehicle(Remembering):
         with checking() as check:
             _check_carried(check, self)
 
+    def told(self) -> list[tuple[str, str]]:
+        """Tell degrees of freedom, contacts, weight, in words."""
+        loads = self.static_loads
+        contacts = [
+            f"{contact.name or f'contact {number}'} at {contact.position:.4g} m ({load / 1e3:.4g} kN)"
+            for number, (contact, load) in enumerate(zip(self.contacts, loads.tolist(), strict=True))
+        ]
+        return [
+            ("degrees of freedom", enumerated(self.dof_names, 8)),
+            ("contacts", enumerated(contacts, 4)),
+            ("weight", f"{loads.sum() / 1e3:.4g} kN"),
+        ]
+
     # The fields as arrays: what the constructor stored.
     @property
     def matrices(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -131,6 +147,21 @@ class Vehicle(Remembering):
             "footprints": np.array([contact.footprint for contact in self.contacts]),
             "cams": np.array([contact.cams for contact in self.contacts]),
         }
+
+    @property
+    def on_rails(self) -> bool:
+        """Whether every contact is as stiff as a wheel on a rail; a rigid one has to be called a wheelset."""
+        # Between the stiffest tyres and the softest wheels on rails [2e7 to 3e8 N/m].
+        least = 1e8
+        return all(
+            contact.stiffness > least and ("wheelset" in contact.name or not contact.rigid)
+            for contact in self.contacts
+        )
+
+    @property
+    def standing(self) -> Standing:
+        """What messages say of the contacts."""
+        return Standing([contact.name for contact in self.contacts], "rail" if self.on_rails else "road")
 
     @property
     def coordinates(self) -> dict[str, ArrayLike]:
@@ -211,13 +242,15 @@ class Vehicle(Remembering):
         return held(Quadratic.of(mass, damping, stiffness), contact_map, self.springs, self.dashpots)
 
 
-def require_vehicle(vehicle: object) -> None:
+def require_vehicle(vehicle: object, name: str = "vehicle") -> None:
     """Refuse what is no vehicle.
 
     Parameters
     ----------
     vehicle : object
         What was given.
+    name : str
+        Name of the argument.
 
     Raises
     ------
@@ -225,8 +258,13 @@ def require_vehicle(vehicle: object) -> None:
         If it is no `Vehicle`.
     """
     with checking() as check:
-        if not isinstance(vehicle, Vehicle):
-            check.refuse("vehicle", f"must be a Vehicle, got {shown(vehicle)}")
+        check_vehicle(check, vehicle, name)
+
+
+def check_vehicle(check: Checks, vehicle: object, name: str = "vehicle") -> None:
+    """Refuse what is no vehicle, along with whatever else is wrong."""
+    if not isinstance(vehicle, Vehicle):
+        check.refuse(name, mistaken("vehicle", vehicle))
 
 
 def _names(check: Checks, names: Sequence[str]) -> tuple[str, ...]:

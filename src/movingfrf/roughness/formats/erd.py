@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from movingfrf._basics import wording
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import columns as text
@@ -64,7 +65,9 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     start = _number(words.get("XSTART", "0"), "XSTART")
     values = _text(body, count, below) if STORED[key] is None else _binary(path, count, STORED[key])
     if samples >= 0 and len(values) != samples:
-        raise ValueError(f"announces {samples} samples for each channel, but {len(values)} are there")
+        raise ValueError(
+            f"announces {wording.count(samples, 'sample')} for each channel, but {len(values)} are there"
+        )
     if not step > 0:
         raise ValueError(f"must have a positive step between samples, got {step!r}")
     elevations = np.stack([scaled(values[:, n], s) for n, s in zip(used, scales, strict=True)], axis=1)

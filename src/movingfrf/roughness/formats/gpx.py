@@ -10,6 +10,7 @@ from xml.parsers import expat
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.wording import count
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
 
 
@@ -63,12 +64,12 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     onward = np.concatenate([[True], steps > 0])
     stations = np.concatenate([[0.0], np.cumsum(steps)])[onward]
     standing = int(np.sum(~onward))
-    said = f"{standing} points that do not lead on left out"
+    said = f"{count(standing, 'point')} that {'does' if standing == 1 else 'do'} not lead on left out"
     numbers = np.flatnonzero(onward)
     return RawProfile(
         stations,
         height[onward][:, None],
-        f"GPX track {track.name!r} of {height.size} points, horizontal distance on the ellipsoid of WGS 84"
+        f"GPX track {track.name!r} of {count(height.size, 'point')}, horizontal distance on the ellipsoid of WGS 84"
         + (f", {said}" if standing else ""),
         source=track.name,
         steps=(said,) if standing else (),

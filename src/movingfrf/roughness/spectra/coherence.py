@@ -10,6 +10,7 @@ from scipy.special import gamma, kv
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.values import Value
 from movingfrf.roughness.spectra.iso import IsoRoad
 from movingfrf.roughness.spectra.spectrum import LARGEST_WAVINESS, Spectrum
 
@@ -41,8 +42,8 @@ class Coherence(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class IsotropicCoherence:
+@dataclass(frozen=True, slots=True)
+class IsotropicCoherence(Value):
     """Coherence of a surface that is equally rough in all directions, with a spectrum that falls as n^−w.
 
     A surface whose spectral density over both wavenumbers depends on their magnitude alone, S(κ) ∝ κ^−(w+1), has
@@ -104,8 +105,8 @@ class IsotropicCoherence:
         return np.where(z > 0, np.minimum(shared, 1.0), 1.0)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExponentialCoherence:
+@dataclass(frozen=True, slots=True)
+class ExponentialCoherence(Value):
     """Coherence that decays exponentially with the distance over the wavelength, γ = exp(−d n |Δy|).
 
     A model of one parameter, to be fitted to measured pairs of paths.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
@@ -21,7 +21,7 @@ REFERENCE_FREQUENCY = 0.1
 CLASS_CENTRES = {letter: 16e-6 * 4.0**n for n, letter in enumerate("ABCDEFGH")}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class IsoRoad(BandLimited):
     """Roughness spectrum of ISO 8608, G_d(n) = G_d(n₀) (n/n₀)^−w with n₀ = 0.1 cycle/m.
 
@@ -53,6 +53,7 @@ class IsoRoad(BandLimited):
     """
 
     roughness: float
+    _: KW_ONLY
     waviness: float = 2.0
     band: tuple[float, float] = (0.01, 10.0)
 
@@ -96,11 +97,10 @@ class IsoRoad(BandLimited):
             If there is no such class.
         """
         with checking() as check:
-            if not isinstance(road_class, str) or road_class.upper() not in CLASS_CENTRES:
-                check.refuse("road_class", f"must be one of {', '.join(CLASS_CENTRES)}, got {road_class!r}")
+            road_class = check.choice("road_class", road_class, CLASS_CENTRES)
             check_waviness(check, waviness)
             checked_band(check, band)
-        return cls(roughness=CLASS_CENTRES[road_class.upper()], waviness=waviness, band=band)
+        return cls(roughness=CLASS_CENTRES[road_class], waviness=waviness, band=band)
 
     def _formula(self, n: FloatArray) -> FloatArray:
         return self.roughness * (n / REFERENCE_FREQUENCY) ** -self.waviness

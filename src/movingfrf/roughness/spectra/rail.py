@@ -7,20 +7,20 @@ itself; in cm², mm² or m². Each class says what its source states, and what o
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import checking, plain, shown
+from movingfrf._basics.checks import checking, plain, shown, spelt
 from movingfrf.roughness.spectra.spectrum import BandLimited, band_in_words, checked_band, power_integral
 
 # Wavelengths between which the FRA's forms hold: 5 and 1000 feet.
 FRA_BAND = (1 / 304.8, 1 / 1.524)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class FraTrack(BandLimited):
     """Vertical profile of American track by class, S(Ω) = k A_v Ω_c²/(Ω²(Ω² + Ω_c²)) with k = 0.25.
 
@@ -71,6 +71,7 @@ class FraTrack(BandLimited):
     }
 
     roughness: float
+    _: KW_ONLY
     band: tuple[float, float] = FRA_BAND
 
     def __post_init__(self) -> None:
@@ -120,7 +121,7 @@ class FraTrack(BandLimited):
         return self._scale / c**2 * (1 / low - 1 / high - _lorentzian(c, low, high))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class FrybaTrack(BandLimited):
     """Vertical profile of American track by class, after Frýba, S(n) = A n₂²(n² + n₁²)/(n⁴(n² + n₂²)).
 
@@ -166,6 +167,7 @@ class FrybaTrack(BandLimited):
     }
 
     roughness: float
+    _: KW_ONLY
     band: tuple[float, float] = FRA_BAND
 
     def __post_init__(self) -> None:
@@ -210,7 +212,7 @@ class FrybaTrack(BandLimited):
         return self.roughness * (simple + b**2 / 3 * (low**-3 - high**-3))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class GermanTrack(BandLimited):
     """Vertical profile of German high-speed track, S(Ω) = A_v Ω_c²/((Ω² + Ω_r²)(Ω² + Ω_c²)).
 
@@ -250,6 +252,7 @@ class GermanTrack(BandLimited):
     _ROUGHNESS: ClassVar[Mapping[str, float]] = {"low": 4.032e-7, "high": 10.80e-7}
 
     roughness: float
+    _: KW_ONLY
     band: tuple[float, float] = (1 / 150, 1 / 3)
 
     def __post_init__(self) -> None:
@@ -297,7 +300,7 @@ class GermanTrack(BandLimited):
         return scale * (_lorentzian(r, low, high) - _lorentzian(c, low, high))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class SncfTrack(BandLimited):
     """Vertical profile of French track, S(n) = A/(1 + n/n₀)³ with n₀ = 0.0489 cycle/m.
 
@@ -336,6 +339,7 @@ class SncfTrack(BandLimited):
     _ROUGHNESS: ClassVar[Mapping[str, float]] = {"good": 308e-6 * 0.509, "poor": 308e-6 * 1.790}
 
     roughness: float
+    _: KW_ONLY
     band: tuple[float, float] = (1 / 40, 1 / 2)
 
     def __post_init__(self) -> None:
@@ -449,6 +453,8 @@ def _check_and_store(spectrum: BandLimited, roughness: float, unit: str, band: t
 def _listed(track_class: int | str, values: Mapping[Any, float], band: tuple[float, float]) -> float:
     """Roughness of a class that a table lists; a wrong band is reported together with a wrong class."""
     track_class = plain(track_class)
+    if isinstance(track_class, str):
+        track_class = spelt(track_class, [one for one in values if isinstance(one, str)]) or track_class
     known = (
         not isinstance(track_class, (bool, float)) and isinstance(track_class, Hashable) and track_class in values
     )

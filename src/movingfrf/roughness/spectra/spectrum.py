@@ -9,6 +9,8 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.door import mistaken
+from movingfrf._basics.values import Value
 
 # Measured roads lie between 1 and 4; powers far beyond overflow.
 LARGEST_WAVINESS = 10.0
@@ -31,7 +33,7 @@ class Spectrum(Protocol):
         ...
 
 
-class BandLimited(ABC):
+class BandLimited(ABC, Value):
     """A formula and its integral, cut off at the ends of a band: all that a spectrum needs."""
 
     __slots__ = ()
@@ -129,3 +131,22 @@ def checked_band(check: Checks, band: tuple[float, float]) -> tuple[float, float
 def band_in_words(band: tuple[float, float]) -> str:
     """Write a band with its unit."""
     return f"{band[0]:g} to {band[1]:g} cycle/m"
+
+
+def require_spectrum(spectrum: object) -> None:
+    """Refuse what is no spectrum.
+
+    Parameters
+    ----------
+    spectrum : object
+        What was given.
+
+    Raises
+    ------
+    ValueError
+        If it does not keep the contract of a `Spectrum`.
+    """
+    kept = all(hasattr(spectrum, name) for name in ("band", "density", "variance_below"))
+    with checking() as check:
+        if isinstance(spectrum, type) or not kept:
+            check.refuse("spectrum", mistaken("spectrum", spectrum))

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
-from movingfrf.roughness.spectra.spectrum import BandLimited, Spectrum, band_in_words
+from movingfrf._basics.values import digest
+from movingfrf.roughness.spectra.spectrum import BandLimited, Spectrum, band_in_words, require_spectrum
 
 # Amplitude to which levels of roughness refer [m].
 REFERENCE_AMPLITUDE = 1e-6
@@ -18,7 +19,7 @@ REFERENCE_AMPLITUDE = 1e-6
 HALF_THIRD = 10**0.05
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class TabulatedSpectrum(BandLimited):
     """Spectrum through tabulated densities, straight between them in logarithms.
 
@@ -59,6 +60,10 @@ class TabulatedSpectrum(BandLimited):
                 if (density <= 0).any():
                     check.refuse("spectral_density", f"must be positive throughout, got {density.min():g} m³")
 
+    def __repr__(self) -> str:
+        """Say which spectrum it is, and a sum over its numbers in place of them: results carry it."""
+        return f"TabulatedSpectrum({self}, blake2b={digest(self)})"
+
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""
         return f"spectrum through {np.size(self.spatial_frequency)} values, {band_in_words(self.band)}"
@@ -90,7 +95,7 @@ class TabulatedSpectrum(BandLimited):
         return value * knot * np.where(rise == 0, growth, np.expm1(safe * growth) / safe)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class ThirdOctaveSpectrum(BandLimited):
     """Spectrum with given levels in bands of a third of an octave, its density the same throughout each band.
 
@@ -133,6 +138,10 @@ class ThirdOctaveSpectrum(BandLimited):
                     check.refuse("level", f"must have {centres.size} values, one per wavelength, got {levels.size}")
                 if (np.abs(levels) > 200).any():
                     check.refuse("level", "must be of a credible magnitude, within ±200 dB")
+
+    def __repr__(self) -> str:
+        """Say which spectrum it is, and a sum over its numbers in place of them: results carry it."""
+        return f"ThirdOctaveSpectrum({self}, blake2b={digest(self)})"
 
     def __str__(self) -> str:
         """Say which spectrum it is, in words."""
@@ -209,6 +218,7 @@ def third_octave_levels(spectrum: Spectrum, wavelength: ArrayLike) -> FloatArray
     ValueError
         If a wavelength is not positive.
     """
+    require_spectrum(spectrum)
     with checking() as check:
         centres = check.array("wavelength", wavelength, "m", (None,))
         if not check.faults and (centres <= 0).any():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -29,7 +29,7 @@ class RoadType(NamedTuple):
     roughness: Mapping[str, float]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class TwoSlopeRoad(BandLimited):
     """Road spectrum of two slopes, G_d(n) = G_d(n₀) (n/n₀)^−w with n₀ = 1/(2π) cycle/m: w₁ up to n₀, w₂ beyond.
 
@@ -76,6 +76,7 @@ class TwoSlopeRoad(BandLimited):
     }
 
     roughness: float
+    _: KW_ONLY
     waviness: tuple[float, float] = (2.0, 1.5)
     band: tuple[float, float] = (0.01, 10.0)
 
@@ -133,8 +134,7 @@ class TwoSlopeRoad(BandLimited):
             for quality, roughness in kind.roughness.items()
         }
         with checking() as check:
-            if not isinstance(road_class, str) or road_class not in known:
-                check.refuse("road_class", f"must be one of {', '.join(known)}, got {road_class!r}")
+            road_class = check.choice("road_class", road_class, known)
             checked_band(check, band)
         roughness, usual = known[road_class]
         return cls(roughness=roughness, waviness=usual if waviness is None else waviness, band=band)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.checks import checking
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import Step, changed
 
 
-def cropped(profile: Profile, *, first: float | None = None, last: float | None = None) -> Profile:
+def cropped(profile: Profile, first: float | None = None, last: float | None = None) -> Profile:
     """Take the stations from one distance to another.
 
     Parameters
@@ -36,6 +36,7 @@ def cropped(profile: Profile, *, first: float | None = None, last: float | None 
     >>> cropped(Profile(np.arange(9.0), np.zeros(9)), first=2.5).stations.tolist()
     [3.0, 4.0, 5.0, 6.0, 7.0, 8.0]
     """
+    require_profile(profile)
     stations = profile.stations
     with checking() as check:
         low = stations[0] if first is None else check.finite("first", first, "m")

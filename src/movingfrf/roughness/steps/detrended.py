@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.checks import checking
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import Step, changed, like
 
 
-def detrended(profile: Profile, *, degree: int = 1) -> Profile:
+def detrended(profile: Profile, degree: int = 1) -> Profile:
     """Take out drift: of each path the polynomial that fits it best.
 
     Parameters
@@ -35,6 +35,7 @@ def detrended(profile: Profile, *, degree: int = 1) -> Profile:
     >>> detrended(Profile(x, 3.0 + 0.1 * x)).elevation.max().round(12).item()
     0.0
     """
+    require_profile(profile)
     most = 5
     with checking() as check:
         if (degree := check.whole("degree", degree)) > most:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import Step, without_waves
 
 
-def low_passed(profile: Profile, *, wavelength: float) -> Profile:
+def low_passed(profile: Profile, wavelength: float) -> Profile:
     """Take out short waves, without shifting the others: a Butterworth filter of second order, forth and back.
 
     A wave of length λ keeps 1/(1 + (λ_c/λ)⁴) of its amplitude, half of it at λ = λ_c. So it is while both are many
@@ -39,6 +39,7 @@ def low_passed(profile: Profile, *, wavelength: float) -> Profile:
     >>> round(float(middle.max()), 2)
     0.5
     """
+    require_profile(profile)
     return without_waves(profile, "shorter", wavelength)
 
 

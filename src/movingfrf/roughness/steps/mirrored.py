@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import Step, extended, longer
 
 
-def mirrored(profile: Profile, *, length: float) -> Profile:
+def mirrored(profile: Profile, length: float) -> Profile:
     """Make a longer road of a short one by driving it forth and back, forth and back.
 
     There is no jump where it turns, but a corner; such a road is periodic over twice the length of the original.
@@ -35,6 +35,7 @@ def mirrored(profile: Profile, *, length: float) -> Profile:
     >>> mirrored(Profile([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 2.0, 5.0]), length=6.0).elevation.tolist()
     [0.0, 1.0, 2.0, 5.0, 2.0, 1.0, 0.0]
     """
+    require_profile(profile)
     step = profile.require_even("mirroring")
     own = profile.stations[-1] - profile.stations[0]
     length, count = longer(length, own, step, profile.paths)

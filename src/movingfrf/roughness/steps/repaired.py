@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.checks import checking
-from movingfrf.roughness.profile import SLACK, Profile
+from movingfrf.roughness.profile import SLACK, Profile, require_profile
 from movingfrf.roughness.steps.base import Step, changed, like
 
 
@@ -43,6 +43,7 @@ def repaired(profile: Profile, *, spike: float, window: float = 1.0, longest: fl
     >>> clean.steps[0]
     'replaced 1 spike of more than 0.02 m over the median of 1 m: the longest gap 0.2 m at 2 m'
     """
+    require_profile(profile)
     from scipy.ndimage import median_filter
 
     with checking() as check:

@@ -6,11 +6,11 @@ import numpy as np
 
 from movingfrf._basics.checks import checking
 from movingfrf._basics.smooth import smooth_step
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import Step, extended, longer
 
 
-def repeated(profile: Profile, *, length: float, overlap: float = 0.0) -> Profile:
+def repeated(profile: Profile, length: float, *, overlap: float = 0.0) -> Profile:
     """Make a longer road of a short one by putting copies of it behind each other.
 
     Such a road is periodic: its spectrum has lines, and what happens once on the original happens every time.
@@ -40,6 +40,7 @@ def repeated(profile: Profile, *, length: float, overlap: float = 0.0) -> Profil
     >>> repeated(Profile([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 2.0, 1.0]), length=6.0).elevation.tolist()
     [0.0, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0]
     """
+    require_profile(profile)
     step = profile.require_even("repetition")
     own = profile.stations[-1] - profile.stations[0]
     length, count = longer(length, own, step, profile.paths)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.checks import checking
-from movingfrf.roughness.profile import SLACK, Profile
+from movingfrf.roughness.profile import SLACK, Profile, require_profile
 from movingfrf.roughness.steps.base import FILTER, Step, changed, filtered, like, require_room
 
 
-def resampled(profile: Profile, *, step: float) -> Profile:
+def resampled(profile: Profile, step: float) -> Profile:
     """Put the stations at an even step: on the cubic spline, after waves that are too short for it are taken out.
 
     If the new step is longer than that of the profile (the median one where it is uneven), waves shorter than 2.5
@@ -38,6 +38,7 @@ def resampled(profile: Profile, *, step: float) -> Profile:
     >>> resampled(Profile([0.0, 0.9, 2.1, 3.0], [0.0, 0.9, 2.1, 3.0]), step=0.5).elevation.round(9).tolist()
     [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0]
     """
+    require_profile(profile)
     with checking() as check:
         step = check.positive("step", step, "m")
     stations = profile.stations

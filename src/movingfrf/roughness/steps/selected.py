@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from movingfrf._basics.checks import checking, shown
-from movingfrf.roughness.profile import Profile
+from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import Step, changed
 
 
-def selected(profile: Profile, *, paths: Sequence[int]) -> Profile:
+def selected(profile: Profile, paths: Sequence[int]) -> Profile:
     """Take some of the paths, in the order in which they are named.
 
     Parameters
@@ -37,6 +37,7 @@ def selected(profile: Profile, *, paths: Sequence[int]) -> Profile:
     >>> selected(both, paths=[1]).elevation[0].tolist()
     [1.0]
     """
+    require_profile(profile)
     with checking() as check:
         if np.ndim(paths) != 1 or not len(paths):
             check.refuse("paths", f"must be a list of at least one number of a path, got {shown(paths)}")

@@ -22,9 +22,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from movingfrf._basics.checks import ValidityWarning
+from movingfrf._basics.checks import ValidityWarning, checking
+from movingfrf._basics.door import mistaken
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.undoing import carried_out
+from movingfrf._basics.values import Value, brief
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Drive, Scenario, shortened
 from movingfrf.scenarios.stepped import elements
@@ -81,8 +83,8 @@ class Point(NamedTuple):
     relative_l2: dict[str, float]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Comparison(Value):
     """What `compare` found.
 
     Parameters
@@ -104,6 +106,13 @@ class Comparison:
     curve: list[Point]
     reference: Reference
     equal_error: dict[float, dict[str, float]] = field(default_factory=dict)
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell scenario, and of each method its time and error, in words."""
+        return [
+            ("scenario", self.scenario.name),
+            *((row.method, brief(f"{row.solve_s:.3g} s, errors {row.relative_l2}")) for row in self.rows),
+        ]
 
     @property
     def main_quantity(self) -> str:
@@ -151,6 +160,9 @@ def compare(
     SolveError
         If the case has no meaningful answer.
     """
+    with checking() as check:
+        if not isinstance(scenario, Scenario):
+            check.refuse("scenario", mistaken("scenario", scenario))
     compared = chosen(scenario, methods)
     own = Case(scenario=scenario, time_step=scenario.journey.time_step, element=elements(scenario.guideway)[-1])
     for case in (own, replace(own, element=elements(scenario.guideway)[0])):

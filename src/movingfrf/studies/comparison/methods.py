@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import nearest
+from movingfrf._basics.checks import nearest, spelt
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.foundations import OnMass
 from movingfrf.guideways.guideway import Guideway
@@ -315,7 +315,7 @@ def chosen(scenario: Scenario, names: Sequence[str] | None) -> dict[str, Method]
     long = with_vehicle and np.ptp(scenario.case.places) > 16.0
     suited = {name: method for name, method in known.items() if method.finite or not ends}
     usual = [name for name, method in suited.items() if method.usual and not (long and method.strikes)]
-    wanted = usual if names is None else list(names)
+    wanted = usual if names is None else [spelt(name, known) or name for name in names]
     unknown = [name for name in wanted if name not in known]
     if unknown or not wanted:
         what = "a vehicle" if with_vehicle else "prescribed loads"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from movingfrf._basics.version import VERSION
-from movingfrf._basics.wording import number, plain
+from movingfrf._basics.wording import count, in_both_units, number, plain
 from movingfrf.reports.axes import legend_above
 from movingfrf.reports.curves import GREY, PALETTE
 from movingfrf.reports.figures import SIZE, Illustration, blank, drawing, illustrated
@@ -105,7 +105,7 @@ def _summary(comparison: Comparison) -> str:
     what = f"a vehicle on {road}" if isinstance(comparison.scenario.case, Drive) else "prescribed loads on a road"
     words = (
         f"One case, {what} at {plain(journey.speed)} m/s for {plain(journey.duration)} s, solved by "
-        f"{len(comparison.rows)} methods in one process on one thread. Errors are those of the "
+        f"{count(len(comparison.rows), 'method')} in one process on one thread. Errors are those of the "
         f"{_main(comparison)}, unless said otherwise, relative to a converged answer from "
         "the time domain."
     )
@@ -120,7 +120,7 @@ def _summary(comparison: Comparison) -> str:
 def _settings(comparison: Comparison) -> list[Setting]:
     journey, reference = comparison.scenario.journey, comparison.reference
     return [
-        Setting("Speed", f"{plain(journey.speed)} m/s", f"{plain(round(3.6 * journey.speed, 6))} km/h"),
+        Setting("Speed", *in_both_units(journey.speed, in_kmh=journey.in_kmh)),
         Setting("Duration", f"{plain(journey.duration)} s"),
         Setting("Time step", f"{plain(1e3 * journey.time_step)} ms", "of the table"),
         Setting("Threads", "1"),
