@@ -25,9 +25,6 @@ from movingfrf.roughness.formats.arrays import Array
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
-# Where the superblock holds the addresses of the beginning and the end of the data, by its version.
-ADDRESSES = {0: (24, 40), 1: (28, 44), 2: (12, 28), 3: (12, 28)}
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
@@ -102,7 +99,9 @@ def _require_bounds(path: Path) -> int:
     with path.open("rb") as file:
         head = file.read(1024)
     block = head[max(head.find(SIGNATURE), 0) :]
-    places = ADDRESSES.get(block[8]) if len(block) > 8 else None
+    # Where the superblock holds the addresses of the beginning and the end of the data, by its version.
+    addresses = {0: (24, 40), 1: (28, 44), 2: (12, 28), 3: (12, 28)}
+    places = addresses.get(block[8]) if len(block) > 8 else None
     base, end = [int.from_bytes(block[at : at + 8], "little") for at in places or (0, 0)]
     size = path.stat().st_size
     if places is None or base > size or not max(size - LIMITS.trailing, 1) <= end <= size:

@@ -9,16 +9,13 @@ from movingfrf.roughness.formats import arrays, hdf
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
 from movingfrf.roughness.profile import Profile
 
-# Between the sentences of an attribute: netCDF turns a list of one into text.
-BETWEEN = "\n"
-
 
 def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     """Read distance and elevation, and where they come from."""
     with hdf.opened(path) as content:
         found = arrays.raw_profile(content.arrays, columns, "netCDF")
     source, steps = content.attributes["source"], content.attributes["steps"]
-    return found._replace(source=source, steps=tuple(step for step in steps.split(BETWEEN) if step))
+    return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
 
 
 def write(profile: Profile, path: Path, encoding: str = "") -> None:
@@ -33,7 +30,8 @@ def write(profile: Profile, path: Path, encoding: str = "") -> None:
         words = {"units": "m", "long_name": "lateral position, left positive"}
         variables["across"] = xr.Variable(("path",), list(profile.across), words)
     distance = xr.Variable(("distance",), profile.stations, {"units": "m", "long_name": "distance along the road"})
-    attributes = {"source": profile.source, "steps": BETWEEN.join(profile.steps)}
+    # One text: netCDF turns a list of one into text.
+    attributes = {"source": profile.source, "steps": "\n".join(profile.steps)}
     xr.Dataset(variables, {"distance": distance}, attributes).to_netcdf(path, engine="h5netcdf")
 
 
