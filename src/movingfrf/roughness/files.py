@@ -11,8 +11,8 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ParameterError, checking, option, shown
 from movingfrf.roughness.formats import columns as text
-from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
+from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file, sheets
+from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, Wanted
 from movingfrf.roughness.profile import Profile
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -27,6 +27,7 @@ FORMATS = {
         netcdf.FORMAT,
         numpy_file.FORMAT,
         gpx.FORMAT,
+        sheets.FORMAT,
         text.FORMAT,
     )
 }
@@ -65,6 +66,10 @@ def read_profile(
     *,
     format: str | None = None,
     columns: Sequence[ColumnKey] | None = None,
+    recording: str | None = None,
+    units: Sequence[str] | None = None,
+    speed: float | None = None,
+    skip_lines: int | None = None,
     across: Sequence[float] | None = None,
     crop_rims: bool = False,
     repair_gaps: float | None = None,
@@ -83,6 +88,14 @@ def read_profile(
     columns : sequence of str or int, optional
         The columns, channels or arrays to take: the station, then elevations. Names, or numbers counted from 0. Of
         an ERD file, which has no stations, elevations only.
+    recording : str, optional
+        Which of several recordings in the file: a sheet.
+    units : sequence of str, optional
+        Units of the stations and of the elevations, instead of those in the file: "ft", "in".
+    speed : float, optional
+        Constant speed [m/s] of a record over time, whose times it turns into distances.
+    skip_lines : int, optional
+        Number of lines at the beginning of a text to leave out, where it is not plain where the table begins.
     across : sequence of float, optional
         Lateral positions of the paths to take from a grid [m], left positive; interpolated between its long
         sections. All of these are paths by default, from left to right.
@@ -124,13 +137,24 @@ def read_profile(
             isinstance(columns, (list, tuple)) and all(type(column) in (str, int) for column in columns)
         ):
             check.refuse("columns", f"must be a list of names or numbers of columns, got {shown(columns)}")
+        if units is not None and not (
+            isinstance(units, (list, tuple)) and len(units) > 1 and all(isinstance(unit, str) for unit in units)
+        ):
+            check.refuse(
+                "units", f"must be a list of units, of the stations and of the elevations, got {shown(units)}"
+            )
+        if speed is not None:
+            speed = check.positive("speed", speed, "m/s")
+        if skip_lines is not None:
+            skip_lines = check.whole("skip_lines", skip_lines, least=0)
         if not isinstance(crop_rims, bool):
             check.refuse("crop_rims", f"must be true or false, got {shown(crop_rims)}")
         if format is not None and format not in list(FORMATS):
             check.refuse("format", f"must be one of {', '.join(FORMATS)}, got {shown(format)}")
     try:
         form = _recognised(path, format)
-        raw = form.read(path, columns)
+        raw = form.read(path, _understood_by(form, Wanted(columns, recording, units, skip_lines or 0)))
+        raw = _at_speed(raw, speed)
         if wanted is not None:
             raw = _on_paths(raw, wanted)
         if crop_rims:
@@ -239,6 +263,30 @@ def _recognised(path: Path, name: str | None) -> Format:
     if shown is None and ending not in (None, text.FORMAT):
         raise ValueError(f"is not what its ending {path.suffix} says")
     return shown or text.FORMAT
+
+
+def _understood_by(form: Format, wanted: Wanted) -> Wanted:
+    """Refuse what a format does not understand."""
+    for name in ("units", "skip_lines"):
+        if getattr(wanted, name) and name not in form.takes:
+            those = ", ".join(other.title for other in FORMATS.values() if name in other.takes)
+            raise ValueError(f"{option(name)} is for {those}, and this is {form.title}")
+    return wanted
+
+
+def _at_speed(raw: RawProfile, speed: float | None) -> RawProfile:
+    """Turn times into distances."""
+    if not raw.timed and speed is None:
+        return raw
+    if not raw.timed:
+        raise ValueError(f"has distances of its own, so {option('speed')} is not needed")
+    if speed is None:
+        raise ValueError(
+            f"is a record over time, and a profile is one over distance ({raw.understood}); "
+            f"{option('speed')} [m/s] turns times into distances, {option('columns')} chooses other columns"
+        )
+    done = f"turned times into distances at {speed:g} m/s"
+    return raw._replace(stations=raw.stations * speed, steps=(*raw.steps, done), timed=False)
 
 
 def _on_paths(raw: RawProfile, across: FloatArray) -> RawProfile:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.checks import option
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
+from movingfrf.roughness.formats.base import Format, RawProfile, Wanted
 from movingfrf.roughness.profile import Profile
 
 
@@ -29,9 +28,9 @@ ENCODINGS = {
 }
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read a grid of elevations; its long sections become paths, from left to right."""
-    if columns is not None:
+    if wanted.columns is not None:
         raise ValueError(
             f"is a grid: choose its paths by {option('across')}, their lateral positions, not by columns"
         )

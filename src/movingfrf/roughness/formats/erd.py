@@ -11,15 +11,16 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats.base import (
-    ColumnKey,
     Format,
     RawProfile,
+    Wanted,
     bytes_of,
     chosen_columns,
     listed,
     metres,
     scaled,
 )
+from movingfrf.roughness.formats.fields import Table, numbers
 from movingfrf.roughness.profile import Profile
 
 
@@ -44,7 +45,7 @@ STORED: dict[int, np.dtype[np.generic] | None] = {
 ENCODINGS = {"text": 5, "float": 1, "double": 2}
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read an ERD file; binary numbers lie beside it, in a file of its name that ends in .bin."""
     data = bytes_of(path)
     header, body, below = _split(data)
@@ -55,7 +56,7 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
             raise ValueError(f"scales its numbers by {keyword}, which is not understood")
     names = _fields(header, "SHORTNAM", count)
     units = _fields(header, "UNITSNAM", count)
-    used = list(range(count)) if columns is None else chosen_columns(names, columns)
+    used = list(range(count)) if wanted.columns is None else chosen_columns(names, wanted.columns)
     scales = [metres(units[n] or "m", f"channel {names[n]!r}") for n in used]
     along = words.get("XUNITS", "").strip()
     scale = metres(along or "m", "XUNITS")
@@ -180,9 +181,9 @@ def _text(body: bytes, count: int, below: int) -> FloatArray:
         raise ValueError(f"line {below}: {width} numbers in a line do not fit {count} channels")
     skipped = len(body) - len(body.lstrip())
     below += body[:skipped].count(b"\n")
-    layout = text.ColumnLayout(separator, ".", "\x01", [str(n) for n in range(width)], [None] * width, 1, 0)
+    layout = Table(separator, ".", "#", width, False, frozenset(), 1, [], [])
     try:
-        values = text.numbers(body[skipped:], "latin-1", layout)
+        values = numbers(body[skipped:], "latin-1", layout).values
     except ValueError as error:
         raise ValueError(f"behind the header, which ends above line {below}: {error}") from None
     if values.size % count:

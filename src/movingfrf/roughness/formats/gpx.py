@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Sequence
 from pathlib import Path
 from xml.parsers import expat
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
+from movingfrf.roughness.formats.base import Format, RawProfile, Wanted, bytes_of
 
 
 class GpxTrack:
@@ -51,9 +50,9 @@ class GpxTrack:
             self.name = self._text.strip()[:100]
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read a track; points that do not lead on are left out, and it says so."""
-    if columns is not None:
+    if wanted.columns is not None:
         raise ValueError("is a track: it has no columns to choose from")
     track = _parsed(bytes_of(path))
     if not track.height:

@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from movingfrf._basics import matlab_file
 from movingfrf.roughness.formats import arrays, hdf
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
+from movingfrf.roughness.formats.base import Format, RawProfile, Wanted, bytes_of
 from movingfrf.roughness.profile import Profile
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read the arrays of either version."""
     data = bytes_of(path)
     if hdf.SIGNATURE in (data[:8], data[512:520]):
         del data
         with hdf.opened(path) as content:
-            return arrays.raw_profile(content.arrays, columns, "MATLAB 7.3 file")
+            return arrays.raw_profile(content.arrays, wanted.columns, "MATLAB 7.3 file")
     numbers = matlab_file.arrays_and_texts(data).numbers
     return arrays.raw_profile(
-        {name: arrays.Array(stored.shape, stored.load) for name, stored in numbers.items()}, columns, "MATLAB file"
+        {name: arrays.Array(stored.shape, stored.load) for name, stored in numbers.items()},
+        wanted.columns,
+        "MATLAB file",
     )
 
 

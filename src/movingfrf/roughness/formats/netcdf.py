@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from movingfrf.roughness.formats import arrays, hdf
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
+from movingfrf.roughness.formats.base import Format, RawProfile, Wanted
 from movingfrf.roughness.profile import Profile
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read distance and elevation, and where they come from."""
     with hdf.opened(path) as content:
-        found = arrays.raw_profile(content.arrays, columns, "netCDF")
+        found = arrays.raw_profile(content.arrays, wanted.columns, "netCDF")
     source, steps = content.attributes["source"], content.attributes["steps"]
     return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,11 +11,11 @@ import numpy as np
 from movingfrf._basics import numpy_file
 from movingfrf._basics.arrays import FloatArray
 from movingfrf.roughness.formats import arrays
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
+from movingfrf.roughness.formats.base import Format, RawProfile, Wanted, bytes_of
 from movingfrf.roughness.profile import Profile
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read distance and elevation, or the arrays that are named, and where they come from."""
     stored = numpy_file.stored_arrays(bytes_of(path))
     numbers = {
@@ -24,7 +23,7 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
         for name, each in stored.items()
         if each.kind in tuple("fiu")
     }
-    found = arrays.raw_profile(numbers, columns, "NumPy file")
+    found = arrays.raw_profile(numbers, wanted.columns, "NumPy file")
     source, steps = (_text(stored.get(name)) for name in ("source", "steps"))
     return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
 
