@@ -265,7 +265,8 @@ def test_scenario_command_and_python_ask_for_steps_by_the_same_keys(tmp_path, ca
         mf.read_scenario(file)
     (said,) = [line for line in str(refused.value).splitlines() if "nonsense" in line]
     allowed = set(said.partition("allowed are ")[2].split(", "))
-    assert allowed == {*keys, "kind", "file", "format", "columns", "across", "crop_rims", "repair_gaps"}
+    read = ("columns", "recording", "units", "speed", "skip_lines", "across", "crop_rims", "repair_gaps")
+    assert allowed == {*keys, "kind", "file", "format", *read}
     assert main(["profile", "--help"]) == 0
     shown = " ".join(capsys.readouterr().out.replace("│", " ").split())
     for key in allowed - {"kind", "file"}:

@@ -253,7 +253,24 @@ FAULTS = [
     ),
     # Profiles from files.
     Fault("units not converted", "roughness/formats/base.py", "else values * scale", "else values"),
-    Fault("decimal comma taken for none", "roughness/formats/columns.py", "decimal=layout.decimal", 'decimal="."'),
+    Fault("decimal comma taken for none", "roughness/formats/fields.py", "decimal=table.decimal", 'decimal="."'),
+    Fault("a spreadsheet's error a comment", "roughness/formats/fields.py", "WRITING.sharp.search(body)", "False"),
+    Fault(
+        "a quotation mark swallows lines",
+        "roughness/formats/fields.py",
+        "any(line.count(b'\"') % 2 for",
+        "any(0 for",
+    ),
+    Fault("a damaged row is a trailing line", "roughness/formats/fields.py", "{2,}[^\\d]*", "{1,}.*"),
+    Fault("letterless exponent lost", "roughness/formats/fields.py", "|(?<=[\\d.])(?=[+-]\\d{3}$)", ""),
+    Fault("a counter for a station", "roughness/formats/columns.py", "if _counter_first(", "if False and ("),
+    Fault("an unnamed column for a station", "roughness/formats/heads.py", 'Head("counter")', 'Head("station")'),
+    Fault("units asked for forgotten", "roughness/formats/columns.py", "if units is None:", "if True:"),
+    Fault("times taken for distances", "roughness/files.py", "raw.stations * speed", "raw.stations"),
+    Fault(
+        "a second line of names skipped", "roughness/formats/heads.py", "if len(row.fields) > 1 for", "if False for"
+    ),
+    Fault("the first of several sheets", "roughness/formats/sheets.py", "if sheet.raw] or", "if sheet.raw][:1] or"),
     Fault("right for left in a grid", "roughness/formats/crg.py", "road.surface_z()[:, ::-1]", "road.surface_z()"),
     Fault("slope and banking left out", "roughness/formats/crg.py", "road.surface_z()[", "road.z["),
     Fault("first path of an ERD file twice", "roughness/formats/erd.py", "values[:, n]", "values[:, 0]"),

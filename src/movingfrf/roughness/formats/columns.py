@@ -26,16 +26,6 @@ from movingfrf.roughness.formats.heads import Columns, columns_of
 from movingfrf.roughness.formats.roles import VOCABULARY, Role, counts, kind_of_unit, sort_out
 from movingfrf.roughness.profile import Profile
 
-# What is said of columns that are not taken.
-REASONS: dict[Role, str] = {
-    "other": "no elevation",
-    "time": "a time",
-    "counter": "a counter",
-    "station": "another station",
-    "across": "a lateral position",
-    "unknown": "not called an elevation",
-}
-
 
 class Taken(NamedTuple):
     """Columns that make a profile."""
@@ -210,7 +200,7 @@ def _taken(head: Columns, values: FloatArray, texts: frozenset[int], there: Sequ
     if station is None:
         unknown = [n for n in able if heads[n].role == "unknown"]
         if _counter_first(values[:, unknown]):
-            left[unknown.pop(0)] = REASONS["counter"]
+            left[unknown.pop(0)] = _why("counter")
         station = unknown[0] if unknown else None
     elevations = [n for n in elevations if n != station and n not in left]
     if station is None or not elevations:
@@ -219,14 +209,26 @@ def _taken(head: Columns, values: FloatArray, texts: frozenset[int], there: Sequ
             f"none of the columns {listed(head.names)} is {what}{_excuses(head, left, able)}; {option('columns')} "
             "names station and elevations"
         )
-    left |= {n: REASONS[heads[n].role] for n in able if n not in (station, *elevations) and n not in left}
+    left |= {n: _why(heads[n].role) for n in able if n not in (station, *elevations) and n not in left}
     return Taken([station, *elevations], timed, left)
 
 
 def _excuses(head: Columns, left: dict[int, str], able: Sequence[int]) -> str:
     """Say of columns that are not what is looked for what they are."""
-    said = {**left, **{n: REASONS[head.heads[n].role] for n in able if head.heads[n].role in ("counter", "other")}}
+    said = {**left, **{n: _why(head.heads[n].role) for n in able if head.heads[n].role in ("counter", "other")}}
     return f" ({', '.join(f'{head.names[n]!r} is {why}' for n, why in sorted(said.items()))})" if said else ""
+
+
+def _why(role: Role) -> str:
+    """Say what a column is that is not taken."""
+    said: dict[Role, str] = {
+        "other": "no elevation",
+        "time": "a time",
+        "counter": "a counter",
+        "station": "another station",
+        "across": "a lateral position",
+    }
+    return said.get(role, "not called an elevation")
 
 
 def _counter_first(columns: FloatArray) -> bool:

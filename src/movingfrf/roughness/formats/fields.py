@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray, IntArray
+from movingfrf._basics.checks import option
 
 # What may stand between two fields, tried in this order; None is any white space.
 SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", None: "spaces"}
@@ -39,15 +40,19 @@ class Writing:
     # Of these the C parser knows the usual ones; the others are read line by line.
     markers: tuple[str, ...] = ("-", "--", "---", "?", "*", "**", "***", ".", "null", "NIL", "na", "N.A.", "n.a.")
     # Whole words: a fault of one letter in a number is none.
-    footer: re.Pattern[str] = re.compile(r"[^\W\d_]{2,}[^\d]*|[-=_*]{2,}")
+    footer: re.Pattern[str] = re.compile(r"[^\W\d_]{2,}[^\d]*")
+    ruled: re.Pattern[str] = re.compile(r"[-=_*]{2,}")
     thousands: re.Pattern[str] = re.compile(r"[+-]?\d{1,3}([.,' ])\d{3}(\1\d{3})*([.,]\d+)?")
     # Signs that begin a comment, wherever they stand or behind a blank or a separator; not within quotation marks.
     comment: re.Pattern[str] = re.compile(
-        r'"[^"]*"|(#(?!N/?[AV]|VALUE|REF|DIV|NUM|NULL|NAME|WERT|BEZUG|ZAHL).*|(?:^|(?<=[\s,;]))(?:[%!]|//).*)'
+        r'"[^"]*"|((?<!\d\.)#(?!N/?[AV]|VALUE|REF|DIV|NUM|NULL|NAME|WERT|BEZUG|ZAHL).*|(?:^|(?<=[\s,;]))(?:[%!]|//).*)'
     )
+    signs: str = "#%!/;*"  # of comments that may hold names
+    # Of these the C parser takes what begins a comment for one.
+    sharp: re.Pattern[bytes] = re.compile(rb"\d\.#|#(N/?[AV]|VALUE|REF|DIV|NUM|NULL|NAME|WERT|BEZUG|ZAHL)")
     closing: re.Pattern[str] = re.compile(r'"[^"]*"|((?:^|(?<=\s));.*)')  # where semicolons separate nothing
     looked_at: int = 400  # lines that show where the table begins [a preamble is shorter; 50 to 10 000]
-    alike: int = 4  # rows that make a table where some columns hold text [3 to 10]
+    alike: int = 8  # rows of which half make a table where some columns hold text [4 to 20]
     tail: int = 2**16  # bytes at the end in which rows that are none are looked for [a convention]
     opened: re.Pattern[str] = re.compile(r'(?:^|[;,\t])\s*"(?:[^"]|"")*$')  # a mark that is not closed in its line
     joined: int = 20  # lines that a field in quotation marks may have [a convention]
@@ -243,10 +248,11 @@ def find_table(data: bytes, encoding: str) -> Table:
         if any(is_number(word) for word in re.split(r"[;,\s]+", line.text) if word):
             raise ValueError(
                 f"line {line.number}: expected a station and at least one elevation, all numbers, got "
-                f"{line.text[:60]!r}{_thousands(line.text.split(';'))}"
+                f"{line.text[:60]!r}{grouped(line.text.split(';'))}"
             )
     raise ValueError(
         f"no numbers in the first {len(plain)} lines: expected a station and at least one elevation in each"
+        + (f"; {option('skip_lines')} leaves out more above the table" if len(shown) == WRITING.looked_at else "")
     )
 
 
@@ -297,23 +303,23 @@ def _in_common(shown: Sequence[Line], separator: str | None) -> int:
         return 0
     bared = (bare(line.text, separator) for line in shown)
     rows = [split(text, separator) for text in islice((text for text in bared if text.strip()), WRITING.alike)]
-    if len(rows) < 2 or any(len(row) != len(first) for row in rows):
+    alike = [_kinds(row) for row in rows if _same_places(_kinds(first), _kinds(row))]
+    if len(alike) < max(2, len(rows) / 2):
         return 0
-    columns = ["".join(column).replace("m", "") for column in zip(*map(_kinds, rows), strict=True)]
-    if any(len(set(kinds)) > 1 for kinds in columns):
-        return 0
+    columns = ["".join(column) for column in zip(*alike, strict=True)]
     able = sum("t" not in kinds for kinds in columns)
     return sum("n" in kinds for kinds in columns) if able > 1 else 0
 
 
+def _same_places(one: str, other: str) -> bool:
+    """Whether two rows have numbers and texts at the same places, as far as nothing is missing."""
+    return len(one) == len(other) and all(a == b or "m" in (a, b) for a, b in zip(one, other, strict=True))
+
+
 def _table(data: bytes, encoding: str, shown: Sequence[Line], at: int, separator: str | None) -> Table:
     first = shown[at]
-    if (
-        separator == ","
-        and "." not in first.text
-        and re.search(r",\s", first.text)
-        and re.search(r"\d,\d", first.text)
-    ):
+    unquoted = re.sub(r'"[^"]*"', "", first.text)
+    if separator == "," and "." not in unquoted and re.search(r",\s", unquoted) and re.search(r"\d,\d", unquoted):
         raise ValueError(
             f"line {first.number}: commas with and without a space behind them, so that a decimal comma cannot be "
             f"told from a separator, got {first.text[:60]!r}"
@@ -361,6 +367,8 @@ def _ended(data: bytes, encoding: str, table: Table) -> Table:
 
 def _is_footer(fields: Sequence[str]) -> bool:
     """Whether a line below a table begins with a word where rows have a number."""
+    if all(map(WRITING.ruled.fullmatch, fields)):
+        return True
     words = [field for field in fields if field and not is_missing(field)]
     return not is_number(fields[0]) and bool(words) and WRITING.footer.fullmatch(words[0]) is not None
 
@@ -372,6 +380,8 @@ def _fast(data: bytes, encoding: str, table: Table) -> FloatArray | None:
     body = memoryview(data)[_offset(data, table.first) : table.end]
     # A quotation mark that is not closed in its line would swallow others.
     if b'"' in data and any(line.count(b'"') % 2 for line in io.BytesIO(body)):
+        return None
+    if b"#" in data and WRITING.sharp.search(body):
         return None
     if not table.texts and re.search(rb"[\d.][dD][+-]?\d", body[:1000]):
         body = memoryview(bytes(body).translate(bytes.maketrans(b"Dd", b"Ee")))  # exponents as Fortran writes them
@@ -452,15 +462,13 @@ def _line_by_line(data: bytes, encoding: str, table: Table) -> Numbers:
 
 
 def _unreadable(line: Line, table: Table) -> str:
-    return (
-        f"expected numbers separated by {table.said}, got {line.text[:60]!r}{_thousands(table.fields(line.text))}"
-    )
+    return f"expected numbers separated by {table.said}, got {line.text[:60]!r}{grouped(table.fields(line.text))}"
 
 
-def _thousands(fields: Sequence[str]) -> str:
+def grouped(fields: Sequence[str]) -> str:
     """Say that thousands are separated, where a field looks like it."""
-    grouped = any(WRITING.thousands.fullmatch(field.strip()) for field in fields)
-    return "; what separates thousands cannot be told from a decimal sign" if grouped else ""
+    found = any(WRITING.thousands.fullmatch(field.strip()) for field in fields)
+    return "; what separates thousands cannot be told from a decimal sign" if found else ""
 
 
 def _offset(data: bytes, line: int) -> int:

@@ -8,11 +8,8 @@ from typing import NamedTuple
 
 from movingfrf._basics.checks import option
 from movingfrf.roughness.formats.base import unit_in
-from movingfrf.roughness.formats.fields import SEPARATORS, Line, Table, is_number, split
+from movingfrf.roughness.formats.fields import SEPARATORS, WRITING, Line, Table, grouped, is_number, split
 from movingfrf.roughness.formats.roles import Head, head, kind_of_unit
-
-# Signs that begin a comment which may hold names.
-SIGNS = "#%!/;*"
 
 
 class Columns(NamedTuple):
@@ -69,8 +66,8 @@ def columns_of(table: Table) -> Columns:
     # A row that is damaged may look like a name, and two lines of names may be a title and names, or a damaged row.
     if named and (any(map(is_number, named.fields)) or (not plain and any(len(row.fields) > 1 for row in above))):
         raise ValueError(
-            f"line {named.line.number}: expected numbers separated by {table.said}, got {named.line.text[:60]!r}; "
-            f"{option('skip_lines')} leaves out lines above the table"
+            f"line {named.line.number}: expected numbers separated by {table.said}, got {named.line.text[:60]!r}"
+            f"{grouped(named.fields)}; {option('skip_lines')} leaves out lines above the table"
         )
     if named and len(named.fields) < table.width:
         raise ValueError(
@@ -93,9 +90,9 @@ def _columns(names: list[str], units: list[str] | None, count: int, skipped: lis
 
 def _row(line: Line, table: Table) -> _Row:
     text = line.text.strip()
-    comment = text[:1] in SIGNS if table.separator != ";" or text[:1] != ";" else False
+    comment = text[:1] in WRITING.signs if table.separator != ";" or text[:1] != ";" else False
     if comment:
-        text = text.lstrip(SIGNS).strip()
+        text = text.lstrip(WRITING.signs).strip()
     return _Row(line, _names(text, table), comment)
 
 
@@ -106,12 +103,12 @@ def _names(text: str, table: Table) -> list[str]:
         own.pop()
     ways = [
         re.split(r"\s{2,}|\t+", text.strip()),
-        [name.strip() for name in re.findall(r"[^\[(]+[\[(][^\])]*[\])]", text)],
+        [name.strip(" ;,\t") for name in re.findall(r"[^\[(]+[\[(][^\])]*[\])]", text)],
         *(split(text, separator) for separator in SEPARATORS if separator),
         _between_spaces(text),
     ]
     fitting = (names for names in ways if len(names) == table.width and _station_in(names))
-    return own if len(own) == table.width else next(fitting, own)
+    return own if len(own) in (table.width, table.width + table.closed) else next(fitting, own)
 
 
 def _between_spaces(text: str) -> list[str]:

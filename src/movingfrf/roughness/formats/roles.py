@@ -44,7 +44,8 @@ VOCABULARY = Vocabulary(
                 r"speed|velocity|.*geschwindigkeit|vitesse|velocidad|temp|temperatur.*|iri|mpd|macrotexture|acc|"
                 r"accel.*|.*beschleunigung|azimuth|heading|bearing|pitch|roll|yaw|curvature|.*kr(ü|ue)mmung|slope|"
                 r"gradient|grade|.*neigung|pente|crossfall|superelevation|cant|(ü|ue)berh(ö|oe)hung|gauge|"
-                r"spurweite|twist|rut|ruts|rutting|spurrinne.*|quality|hdop|satellites?|weight|force|load"
+                r"spurweite|twist|rut|ruts|rutting|spurrinne.*|quality|hdop|satellites?|weight|force|load|"
+                r"versines?|chords?|sehne.*|pfeilh(ö|oe)hen?"  # offsets from a chord
             ),
         ),
         (
@@ -73,6 +74,13 @@ VOCABULARY = Vocabulary(
             re.compile(
                 r"i|n|no|nr|num|number|nummer|index|idx|id|row|line|record|samples?|count|counter|point|pt|punkt|"
                 r"unnamed"
+            ),
+        ),
+        (
+            "other",  # what tells stretches of road apart, and what is said of a station
+            re.compile(
+                r"lanes?|fahrstreifen|direction|richtung|section|abschnitt|route|run|year|jahr|flag|valid|status|event|"
+                r"code|remarks?|comments?|notes?|bemerkung.*|kommentar.*"
             ),
         ),
     ),

@@ -1,8 +1,8 @@
 """Takes the sheets out of a spreadsheet as text in columns, in a process of its own: see `sheets`.
 
-Arguments: the file, a folder to write into, and the most bytes that the process may take. Writes each sheet as 0.txt,
-1.txt and so on, a line for each row, and index.json with their names. What is wrong with the file goes to standard
-error.
+Arguments: the file, a folder to write into, and the most bytes that the process may take. Writes each sheet as
+0.txt, 1.txt and so on, a line for each row, and index.json with their names. What is wrong with the file goes to
+standard error.
 """
 
 from __future__ import annotations
