@@ -282,8 +282,8 @@ FAULTS = [
     Fault(
         "missing values of netCDF read",
         "roughness/formats/hdf_child.py",
-        '*numbers_attribute(item, "missing_value")',
-        "*()",
+        'for name in ("_FillValue", "missing_value"):',
+        'for name in ("_FillValue",):',
     ),
     Fault("class of a straight line", "roughness/straight.py", "most <= _rounding(column)", "most <= FLAT"),
     Fault("digits of a file are roughness", "roughness/straight.py", "max(2 * resolution(elevation), ", "max("),

@@ -84,7 +84,7 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
 
 def write(profile: Profile, path: Path, encoding: str) -> None:
     """Write an ERD file: numbers as text in full, or binary beside it."""
-    step = profile.require_even("an ERD file")
+    step, done = profile.on_grid("an ERD file")
     elevation = profile.columns
     key = ENCODINGS[encoding]
     names = [f"Path{p}" for p in range(elevation.shape[1])]
@@ -100,7 +100,7 @@ def write(profile: Profile, path: Path, encoding: str) -> None:
         "XLABEL  Distance",
         "XUNITS  m",
         f"XSTART  {float(profile.stations[0])!r}",
-        *(f"HISTORY {' '.join(sentence.split())}" for sentence in profile.steps),
+        *(f"HISTORY {' '.join(sentence.split())}" for sentence in done),
         "END",
     ]
     with path.open("w", encoding="latin-1", errors="replace", newline="\n") as file:

@@ -40,10 +40,11 @@ LIMITS = Limits()
 
 
 class HdfContents(NamedTuple):
-    """Arrays of real numbers at the top of a file, and its texts about the whole."""
+    """Arrays of real numbers, those in groups with their names before a slash, and texts about the whole."""
 
     arrays: dict[str, Array]
     attributes: dict[str, str]
+    unread: dict[str, str]  # what else there is, and what it is
 
 
 @contextmanager
@@ -86,7 +87,7 @@ def opened(path: Path) -> Iterator[HdfContents]:
             item["name"]: Array(tuple(item["shape"]), partial(_load, folder / f"{n}.npy"), item["unit"])
             for n, item in enumerate(content["arrays"])
         }
-        yield HdfContents(arrays, content["attributes"])
+        yield HdfContents(arrays, content["attributes"], content["unread"])
 
 
 def _load(file: Path) -> FloatArray:

@@ -13,18 +13,19 @@ from movingfrf.roughness.profile import Profile
 
 
 def read(path: Path, wanted: Wanted) -> RawProfile:
-    """Read the arrays of either version."""
+    """Read the arrays of either version, those in structs too."""
     data = bytes_of(path)
     if hdf.SIGNATURE in (data[:8], data[512:520]):
         del data
         with hdf.opened(path) as content:
-            return arrays.raw_profile(content.arrays, wanted.columns, "MATLAB 7.3 file")
-    numbers = matlab_file.arrays_and_texts(data).numbers
-    return arrays.raw_profile(
-        {name: arrays.Array(stored.shape, stored.load) for name, stored in numbers.items()},
-        wanted.columns,
-        "MATLAB file",
-    )
+            # Fields of structs are groups there.
+            inside = {name.replace("/", "."): array for name, array in content.arrays.items()}
+            return arrays.raw_profile(inside, wanted, "MATLAB 7.3 file", content.unread)
+    found = matlab_file.arrays_and_texts(data)
+    numbers = {
+        name: arrays.Array(stored.shape, stored.load) for name, stored in (found.numbers | found.fields).items()
+    }
+    return arrays.raw_profile(numbers, wanted, "MATLAB file", found.unread)
 
 
 def write(profile: Profile, path: Path, encoding: str = "") -> None:
@@ -39,4 +40,4 @@ def write(profile: Profile, path: Path, encoding: str = "") -> None:
     savemat(path, values, appendmat=False, oned_as="column")
 
 
-FORMAT = Format("mat", "MATLAB", (".mat",), matlab_file.recognised, read, write)
+FORMAT = Format("mat", "MATLAB", (".mat",), matlab_file.recognised, read, write, several=True)

@@ -12,7 +12,7 @@ from movingfrf.roughness.profile import Profile
 def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read distance and elevation, and where they come from."""
     with hdf.opened(path) as content:
-        found = arrays.raw_profile(content.arrays, wanted.columns, "netCDF")
+        found = arrays.raw_profile(content.arrays, wanted, "netCDF", content.unread)
     source, steps = content.attributes["source"], content.attributes["steps"]
     return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
 
@@ -35,5 +35,11 @@ def write(profile: Profile, path: Path, encoding: str = "") -> None:
 
 
 FORMAT = Format(
-    "netcdf", "netCDF", (".nc", ".nc4", ".h5"), lambda head: head.startswith(hdf.SIGNATURE), read, write
+    "netcdf",
+    "netCDF",
+    (".nc", ".nc4", ".h5"),
+    lambda head: head.startswith(hdf.SIGNATURE),
+    read,
+    write,
+    several=True,
 )

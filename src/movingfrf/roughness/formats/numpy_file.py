@@ -23,7 +23,8 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
         for name, each in stored.items()
         if each.kind in tuple("fiu")
     }
-    found = arrays.raw_profile(numbers, wanted.columns, "NumPy file")
+    unread = {name: "no plain array of real numbers" for name, each in stored.items() if each.kind in ("", "c")}
+    found = arrays.raw_profile(numbers, wanted, "NumPy file", unread)
     source, steps = (_text(stored.get(name)) for name in ("source", "steps"))
     return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
 
@@ -60,4 +61,5 @@ FORMAT = Format(
     lambda head: head.startswith(b"PK\x03\x04") and b".npy" in head[:300],
     read,
     write,
+    several=True,
 )

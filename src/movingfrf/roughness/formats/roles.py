@@ -24,6 +24,8 @@ class Vocabulary:
     # Words of a name that tell its role, in English, German, French, Spanish and Italian: the first in this order
     # that a name has. A compound counts by its end or its beginning, as its language has it.
     words: Sequence[tuple[Role, re.Pattern[str]]]
+    # Words that tell one path from another.
+    sides: re.Pattern[str]
     # Units of anything but length and time: quotients, powers, degrees, per cents, forces, voltages.
     other_unit: re.Pattern[str]
 
@@ -83,6 +85,10 @@ VOCABULARY = Vocabulary(
                 r"code|remarks?|comments?|notes?|bemerkung.*|kommentar.*"
             ),
         ),
+    ),
+    sides=re.compile(
+        r"left|right|l|r|links|rechts|gauche|droite?|izquierd[ao]|derech[ao]|sinistr[ao]|destr[ao]|inner|outer|"
+        r"cent(er|re)|middle|mitte|[a-z]*wp|wheel|path|wheelpath|track|rail|lane|spur"
     ),
     other_unit=re.compile(
         r".*[/%°²³^*].*|deg\.?|degrees?(_north|_east)?|rad|c|k|celsius|g|hz|v|mv|n|kn|kg|t|mph|kmh|kph|kmph|knots|"
@@ -164,8 +170,33 @@ def words_of(name: str) -> list[str]:
     >>> words_of("station_ft"), words_of("LElev."), words_of("Distance, m"), words_of("roadHeight2")
     (['station', 'ft'], ['l', 'elev'], ['distance', 'm'], ['road', 'height'])
     """
-    found = re.findall(r"[^\W\d_]+", re.sub(r"([a-zäöü])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3 \2\4", name))
-    return [word.lower() for word in found]
+    return [word.lower() for word in re.findall(r"[^\W\d_]+", _split(name))]
+
+
+def _split(name: str) -> str:
+    """Put a blank before every capital letter that begins a word."""
+    return re.sub(r"([a-zäöü])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3 \2\4", name)
+
+
+def rest_of(name: str) -> str:
+    """Tell what a name says besides its role and its unit: which recording it is.
+
+    Examples
+    --------
+    >>> rest_of("x1"), rest_of("Elevation_left [mm]"), rest_of("distance")
+    ('1', 'left', '')
+    """
+    found = re.findall(r"[^\W\d_]+|\d+", _split(re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name)).lower())
+    if len(found) > 1 and _ends_in_unit(found):
+        found.pop()
+    told = [pattern for role, pattern in VOCABULARY.words if role in ("station", "elevation")]
+    return " ".join(word for word in found if not any(pattern.fullmatch(word) for pattern in told))
+
+
+def names_a_path(name: str) -> bool:
+    """Tell whether a name does nothing but tell one path from another."""
+    words = words_of(name)
+    return bool(words) and all(map(VOCABULARY.sides.fullmatch, words))
 
 
 def sort_out(heads: Sequence[Head]) -> Sorted:
