@@ -158,6 +158,26 @@ def test_a_speed_for_times_only(tmp_path):
         mf.read_profile(file, speed=-1.0)
 
 
+@pytest.mark.parametrize("name", ["road.mat", "road.npz", "road.nc", "road.erd"])
+def test_units_that_are_asked_for_hold_in_every_format_that_leaves_them_open(tmp_path, name):
+    mf.write_profile(mf.Profile(STATIONS, HEIGHTS), tmp_path / name)
+    profile, understood = mf.read_profile(tmp_path / name, units=("ft", "in"))
+    assert profile.stations == pytest.approx(0.3048 * np.array(STATIONS), rel=1e-15)
+    assert profile.columns[:, 0] == pytest.approx(0.0254 * np.array(HEIGHTS), rel=1e-15)
+    assert "ft" in understood
+    assert "in" in understood
+
+
+@pytest.mark.parametrize(("stations", "across"), [("t", None), ("time_s", None), ("time", [0.75])])
+def test_arrays_over_time_need_a_speed(tmp_path, stations, across):
+    np.savez(tmp_path / "road.npz", **{stations: STATIONS, "z": HEIGHTS}, **({"across": across} if across else {}))
+    with pytest.raises(ValueError, match=r"is a record over time.*`speed`"):
+        mf.read_profile(tmp_path / "road.npz")
+    profile, _ = mf.read_profile(tmp_path / "road.npz", speed=20.0)
+    assert profile.stations == pytest.approx(20.0 * np.array(STATIONS), rel=1e-15)
+    assert profile.columns[:, 0].tolist() == HEIGHTS
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -265,10 +265,18 @@ FAULTS = [
     Fault("letterless exponent lost", "roughness/formats/fields.py", "|(?<=[\\d.])(?=[+-]\\d{3}$)", ""),
     Fault("a counter for a station", "roughness/formats/columns.py", "if _counter_first(", "if False and ("),
     Fault("an unnamed column for a station", "roughness/formats/heads.py", 'Head("counter")', 'Head("station")'),
-    Fault("units asked for forgotten", "roughness/formats/columns.py", "if units is None:", "if True:"),
+    Fault(
+        "units asked for forgotten",
+        "roughness/formats/base.py",
+        "if asked is None:\n        return [unit or",
+        "if True:\n        return [unit or",
+    ),
     Fault("times taken for distances", "roughness/files.py", "raw.stations * speed", "raw.stations"),
     Fault(
-        "a second line of names skipped", "roughness/formats/heads.py", "if len(row.fields) > 1 for", "if False for"
+        "a second line of names skipped",
+        "roughness/formats/heads.py",
+        "any(len(row.fields) > 1 for",
+        "any(False for",
     ),
     Fault("the first of several sheets", "roughness/formats/sheets.py", "if sheet.raw] or", "if sheet.raw][:1] or"),
     Fault("right for left in a grid", "roughness/formats/crg.py", "road.surface_z()[:, ::-1]", "road.surface_z()"),

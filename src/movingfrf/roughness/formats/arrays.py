@@ -19,10 +19,10 @@ from movingfrf.roughness.formats.base import (
     chosen_recording,
     listed,
     metres,
-    over_time,
     scaled,
+    units_taken,
 )
-from movingfrf.roughness.formats.roles import Head, counts, head, names_a_path, rest_of, sort_out
+from movingfrf.roughness.formats.roles import Head, counts, head, names_a_path, rest_of, scales_of, sort_out
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,8 +107,11 @@ def raw_profile(
     name, stored = pick.stations
     stations = stored.load().ravel()
     parts = [_by_station(array.load(), stations.size, called) for called, array in pick.elevations]
-    scales = [metres(array.unit or "m", f"{called!r}") for called, array in (pick.stations, *pick.elevations)]
-    stated = {array.unit or "metres, since no unit is given" for _, array in (pick.stations, *pick.elevations)}
+    taken = [pick.stations, *pick.elevations]
+    units = units_taken([array.unit for _, array in taken], wanted.units)
+    timed = head(_bare(name), (wanted.units or [stored.unit])[0]).role == "time"
+    scales = scales_of(units, [f"{called!r}" for called, _ in taken], timed)
+    stated = {unit or "metres, since no unit is given" for unit in units}
     across = pick.across
     (_, first), *others = pick.elevations
     return RawProfile(
@@ -119,6 +122,7 @@ def raw_profile(
         across=None if across is None else scaled(across.load().ravel(), metres(across.unit or "m", "'across'")),
         place=lambda row: f"value {row + 1}",
         same_across=not others and first.is_vector and len(first.shape) < 3,
+        timed=timed,
     )
 
 
@@ -283,9 +287,9 @@ def _nameless(long: Mapping[str, Array], heads: Mapping[str, Head]) -> dict[str,
     if tables:
         return {"" if len(tables) == 1 else _bare(name): _columns_of(name, table) for name, table in tables.items()}
     times = [name for name, each in heads.items() if each.role == "time"]
-    if times and unnamed:
-        raise over_time(times[0])
-    return {}
+    along = next((name for name in times if long[name].is_vector), None)
+    pick = None if along is None else _with(along, long, heads)
+    return {"": pick} if pick else {}
 
 
 def _increases(values: FloatArray) -> bool:

@@ -219,11 +219,34 @@ def told_apart_by_number(names: Sequence[str]) -> list[str]:
     return list(found)
 
 
-def over_time(name: str) -> ValueError:
-    """Refuse a record whose points are known by their time alone."""
-    return ValueError(
-        f"is a record over time ({name[:40]!r}) without a distance: a profile is elevation over distance"
-    )
+def units_taken(own: Sequence[str | None], asked: Sequence[str] | None) -> list[str | None]:
+    """Units of a station and of elevations: those that were asked for, or else a file's own.
+
+    Parameters
+    ----------
+    own : sequence of str or None
+        Units in the file, of the station first; None or empty where it has none.
+    asked : sequence of str, optional
+        Two units, of the station and of all elevations, or one for each.
+
+    Returns
+    -------
+    list of str or None
+        One for each.
+
+    Raises
+    ------
+    ValueError
+        If there are neither two nor one for each.
+    """
+    if asked is None:
+        return [unit or None for unit in own]
+    if len(asked) not in (2, len(own)):
+        raise ValueError(
+            f"{option('units')} must be those of the station and of the elevations, or of each of {len(own) - 1} "
+            f"paths, got {len(asked)}"
+        )
+    return [*asked] if len(asked) == len(own) else [asked[0], *[asked[1]] * (len(own) - 1)]
 
 
 def listed(names: Sequence[str], most: int = 12) -> str:

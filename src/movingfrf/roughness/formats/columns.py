@@ -20,10 +20,11 @@ from movingfrf.roughness.formats.base import (
     listed,
     metres,
     scaled,
+    units_taken,
 )
 from movingfrf.roughness.formats.fields import Line, Table, as_text, find_table, line_of, numbers
 from movingfrf.roughness.formats.heads import Columns, columns_of
-from movingfrf.roughness.formats.roles import VOCABULARY, Role, counts, kind_of_unit, sort_out
+from movingfrf.roughness.formats.roles import Role, counts, kind_of_unit, scales_of, sort_out
 from movingfrf.roughness.profile import Profile
 
 
@@ -72,8 +73,11 @@ def table(data: bytes, wanted: Wanted) -> RawProfile:
         taken = _taken(head, found.values, found.texts, there)
     if wanted.units is not None:
         taken = taken._replace(timed=kind_of_unit(wanted.units[0]) == "time")
-    stated = _units(head, taken, wanted.units)
-    scales = _scales(head, taken, stated, max(rows.first - 1, 1))
+    stated = units_taken([head.units[n] for n in taken.used], wanted.units)
+    try:
+        scales = scales_of(stated, [f"column {head.names[n]!r}" for n in taken.used], taken.timed)
+    except ValueError as error:
+        raise ValueError(f"line {max(rows.first - 1, 1)}: {error}") from None
 
     def place(row: int) -> str:
         return f"line {line_of(data, encoding, rows, row)}"
@@ -236,29 +240,6 @@ def _counter_first(columns: FloatArray) -> bool:
     if columns.shape[1] < 3 or not counts(columns[:, 0]):
         return False
     return bool((np.diff(columns[:, 1]) > 0).all() and not (np.diff(columns[:, 2]) > 0).all())
-
-
-def _units(head: Columns, taken: Taken, units: Sequence[str] | None) -> list[str | None]:
-    """Units of the columns that are taken: those asked for, or else those in the text."""
-    if units is None:
-        return [head.units[n] for n in taken.used]
-    paths = len(taken.used) - 1
-    if len(units) not in (2, 1 + paths):
-        raise ValueError(
-            f"{option('units')} must be those of the station and of the elevations, or of each of {paths} paths, "
-            f"got {len(units)}"
-        )
-    return [*units] if len(units) == 1 + paths else [units[0], *[units[1]] * paths]
-
-
-def _scales(head: Columns, taken: Taken, units: Sequence[str | None], line: int) -> list[float]:
-    """Metres in one unit of each column that is taken, or seconds in one of times."""
-    stated = [(unit, f"column {head.names[n]!r}") for n, unit in zip(taken.used, units, strict=True)]
-    try:
-        scales = [1.0 if unit is None else metres(unit, name) for unit, name in stated[taken.timed :]]
-    except ValueError as error:
-        raise ValueError(f"line {line}: {error}") from None
-    return [VOCABULARY.seconds.get((units[0] or "s").strip().lower(), 1.0), *scales] if taken.timed else scales
 
 
 def _words(rows: Table, head: Columns, taken: Taken, stated: Sequence[str | None], skip_lines: int) -> str:

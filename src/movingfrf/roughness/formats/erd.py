@@ -17,10 +17,11 @@ from movingfrf.roughness.formats.base import (
     bytes_of,
     chosen_columns,
     listed,
-    metres,
     scaled,
+    units_taken,
 )
 from movingfrf.roughness.formats.fields import Table, numbers
+from movingfrf.roughness.formats.roles import scales_of
 from movingfrf.roughness.profile import Profile
 
 
@@ -57,9 +58,8 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
     names = _fields(header, "SHORTNAM", count)
     units = _fields(header, "UNITSNAM", count)
     used = list(range(count)) if wanted.columns is None else chosen_columns(names, wanted.columns)
-    scales = [metres(units[n] or "m", f"channel {names[n]!r}") for n in used]
-    along = words.get("XUNITS", "").strip()
-    scale = metres(along or "m", "XUNITS")
+    along, *taken = units_taken([words.get("XUNITS", "").strip(), *(units[n] for n in used)], wanted.units)
+    scale, *scales = scales_of([along, *taken], ["XUNITS", *(f"channel {names[n]!r}" for n in used)], False)
     start = _number(words.get("XSTART", "0"), "XSTART")
     values = _text(body, count, below) if STORED[key] is None else _binary(path, count, STORED[key])
     if samples >= 0 and len(values) != samples:
@@ -67,7 +67,7 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
     if not step > 0:
         raise ValueError(f"must have a positive step between samples, got {step!r}")
     elevations = np.stack([scaled(values[:, n], s) for n, s in zip(used, scales, strict=True)], axis=1)
-    said = sorted({units[n] or "metres, since no unit is given" for n in used})
+    said = sorted({unit or "metres, since no unit is given" for unit in taken})
     understood = (
         f"ERD with {'text' if STORED[key] is None else f'binary numbers ({STORED[key]})'}, channels "
         f"{listed([names[n] for n in used])} in {', '.join(said)}, stations every {step:g} {along or 'm'}"
@@ -210,4 +210,4 @@ def _recognises(head: bytes) -> bool:
     return head.startswith(HEADER.signature.encode())
 
 
-FORMAT = Format("erd", "ERD", (".erd",), _recognises, read, write, tuple(ENCODINGS))
+FORMAT = Format("erd", "ERD", (".erd",), _recognises, read, write, tuple(ENCODINGS), takes=("units",))

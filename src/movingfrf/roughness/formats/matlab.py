@@ -40,4 +40,4 @@ def write(profile: Profile, path: Path, encoding: str = "") -> None:
     savemat(path, values, appendmat=False, oned_as="column")
 
 
-FORMAT = Format("mat", "MATLAB", (".mat",), matlab_file.recognised, read, write, several=True)
+FORMAT = Format("mat", "MATLAB", (".mat",), matlab_file.recognised, read, write, several=True, takes=("units",))

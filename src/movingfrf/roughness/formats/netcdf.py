@@ -42,4 +42,5 @@ FORMAT = Format(
     read,
     write,
     several=True,
+    takes=("units",),
 )

@@ -62,4 +62,5 @@ FORMAT = Format(
     read,
     write,
     several=True,
+    takes=("units",),
 )

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf.roughness.formats.base import METRES, unit_in
+from movingfrf.roughness.formats.base import METRES, metres, unit_in
 
 Role = Literal["station", "elevation", "across", "time", "counter", "other", "unknown"]
 
@@ -160,6 +160,33 @@ def kind_of_unit(unit: str) -> Literal["length", "time", "other", "unknown"]:
     if word in VOCABULARY.seconds:
         return "time"
     return "other" if VOCABULARY.other_unit.fullmatch(word) else "unknown"
+
+
+def scales_of(units: Sequence[str | None], names: Sequence[str], timed: bool) -> list[float]:
+    """Metres in one unit of a station and of elevations; of a station that is a time, seconds.
+
+    Parameters
+    ----------
+    units : sequence of str or None
+        Units, None for metres or seconds.
+    names : sequence of str
+        What is measured in them, for the message.
+    timed : bool
+        Whether the station is a time.
+
+    Returns
+    -------
+    list of float
+        One for each unit.
+
+    Raises
+    ------
+    ValueError
+        If one is not known.
+    """
+    along = VOCABULARY.seconds.get((units[0] or "s").strip().lower()) if timed else None
+    scales = [metres(unit or "m", name) for unit, name in list(zip(units, names, strict=True))[along is not None :]]
+    return scales if along is None else [along, *scales]
 
 
 def words_of(name: str) -> list[str]:
