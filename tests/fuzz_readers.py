@@ -17,12 +17,14 @@ import time
 import traceback
 import tracemalloc
 import warnings
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 
 from movingfrf.roughness.files import FORMATS, read_profile, write_profile
 from movingfrf.roughness.profile import Profile
+from tests.spreadsheets import xlsx
 
 TIMES, FLOOR, PATIENCE = 10, 2**27, 30.0
 
@@ -54,9 +56,13 @@ def samples(folder: Path) -> dict[str, Path]:
         for encoding in form.encodings if form.write else ():
             name = f"{encoding or 'road'}{form.endings[0]}".replace(" ", "_")
             write_profile(road, folder / name, encoding=encoding or None)
-    table = zip(road.stations.tolist(), road.columns.tolist(), strict=True)
+    table = list(zip(road.stations.tolist(), road.columns.tolist(), strict=True))
     european = "Station [m];Left [mm];Right [mm]\n" + "".join(f"{x};{a};{b}\n" for x, (a, b) in table)
     (folder / "european.csv").write_text(european.replace(".", ","))
+    rows = "".join(f'{x};"joint, {x}";{a:.5f}D+00;#N/A\n' for x, (a, _) in table)
+    (folder / "remarked.txt").write_text(f'Lane 1\n\n"x, m";remark;"z, mm";temperature\n{rows}Total;;;\n')
+    if find_spec("python_calamine"):
+        xlsx(folder / "road.xlsx", {"A": [["x [m]", "z [mm]"], *([x, a] for x, (a, _) in table)]})
     points = b"".join(POINT % (48 + 1e-5 * n, 9.0, 300 + n) for n in range(60))
     (folder / "track.gpx").write_bytes(GPX % points)
     _packed(road, folder)
@@ -173,8 +179,8 @@ def run(count: int, seed: int = 0, only: tuple[str, ...] = ()) -> dict[str, dict
             binary = Path(f"{file}.bin")
             beside = binary.read_bytes() if binary.exists() else b""
             with multiprocessing.get_context("fork").Pool(1) as pool:
-                # Each HDF5 file takes a process of its own, a hundred times the time of others.
-                share = count if name not in ("road.nc", "version73.mat") else -(-count // 10)
+                # Each HDF5 file and spreadsheet takes a process of its own, a hundred times the time of others.
+                share = count if name not in ("road.nc", "version73.mat", "road.xlsx") else -(-count // 10)
                 task = pool.apply_async(batch, (name, file.read_bytes(), beside, seed, share, str(work)))
                 try:
                     found[name] = task.get(timeout=60 + count)

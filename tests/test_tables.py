@@ -4,7 +4,6 @@ import re
 import sys
 import zipfile
 from pathlib import Path
-from xml.sax.saxutils import escape
 
 import numpy as np
 import pytest
@@ -12,8 +11,11 @@ import pytest
 import movingfrf as mf
 from movingfrf.commands.main import main
 from movingfrf.metrics.profile import describe_profile
+from movingfrf.roughness.formats import fields
 from movingfrf.roughness.formats.columns import read_numbers
+from tests.fuzz_readers import damaged
 from tests.reader_parts import written
+from tests.spreadsheets import ods, xlsx
 
 CASES = Path(__file__).parent / "data" / "cases"
 
@@ -198,6 +200,7 @@ QUOTED = [
     '"x [m]","z [mm]","remark"\n' + lines('{x},{z},"joint, ""deep"" at {n}"'),
     '"Distance\n[m]","Elevation\n[mm]"\n' + lines("{x},{z}"),
     '"x [m]"   "z [mm]"\n' + lines('"{x}"   "{z}"'),
+    "x [m],remark,z [mm]\n" + lines('{x},"two\nlines",{z}'),
     "x [m],z [mm],remark\n" + lines('{x},{z},"two\nlines"'),
 ]
 
@@ -344,6 +347,40 @@ def test_a_damaged_line_is_told(tmp_path, text, message):
         mf.read_profile(written(tmp_path, "road.csv", text))
 
 
+def many(form, **options):
+    return "".join(lines(form.replace("{x}", f"{n}{{n}}.25").replace("{z}", f"0.0{n}{{n}}3")) for n in range(1, 6))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x,z\n" + many("{x},{z}"),
+        "distance,remark,left\n" + many('{x},"joint, {n}",{z}'),
+        '"a, m","b, m"\n' + many('"{x}","{z}"').replace(".", ","),
+        "# x[m] z[mm]\n" + many(" {x}  {z} ") + "End of data\n",
+        "x;z;y\n" + many("{x};{z};2;"),
+        many("{x} {z} # joint {n}"),
+        "x,z,y\n" + many("{x},{z},2").replace("0.0123", "NaN").replace("0.0203,2", "--,"),
+        "Road,A12\nInterval: 0.25\n\ndistance,elevation\n" + many("{x},{z}D-03") + "Mean,0.01\n",
+    ],
+)
+def test_the_fast_way_is_the_slow_one(text):
+    """What is read by the C parser, of a text in whatever state, is what each line says by itself."""
+    random = np.random.default_rng([*text.encode()])
+    fast = 0
+    for state in [text.encode(), *(damaged(text.encode(), random) for _ in range(100))]:
+        try:
+            data, encoding = fields.as_text(state)
+            rows = fields.find_table(data, encoding)
+        except ValueError:
+            continue
+        found = fields._fast(data, encoding, rows)
+        if found is not None:
+            assert np.array_equal(found, fields._line_by_line(data, encoding, rows).values, equal_nan=True), state
+            fast += 1
+    assert fast > 4
+
+
 def test_numbers_alone_are_read_from_the_same_texts(tmp_path):
     text = "Force history\n# made by hand\ntime [s];force [N]\n" + lines("{x};{z}D+03 // joint")
     assert (
@@ -354,7 +391,7 @@ def test_numbers_alone_are_read_from_the_same_texts(tmp_path):
         read_numbers(written(tmp_path, "f.txt", "a,b,c\n" + lines("{x},{z},joint")))
 
 
-# Spreadsheets, written by hand: what is in them is the standards', not a library's.
+# Spreadsheets.
 
 ROWS = [["distance [m]", "elevation [mm]", "remark"], *([x, z, ""] for x, z in zip(STATIONS, HEIGHTS, strict=True))]
 TITLED = [
@@ -364,84 +401,6 @@ TITLED = [
     *(["", *row[:2]][1:] for row in ROWS[1:]),
     ["Summe", 4.5],
 ]
-
-
-def xlsx(file, sheets):
-    kinds = "http://schemas.openxmlformats.org/"
-    main_ns, package = f"{kinds}spreadsheetml/2006/main", f"{kinds}package/2006/"
-    office = f"{kinds}officeDocument/2006/relationships"
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as parts:
-        parts.writestr(
-            "[Content_Types].xml",
-            f'<Types xmlns="{package}content-types"><Default Extension="xml" ContentType="application/xml"/>'
-            '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
-            "</Types>",
-        )
-        parts.writestr(
-            "_rels/.rels",
-            f'<Relationships xmlns="{package}relationships"><Relationship Id="r" Type="{office}/officeDocument" '
-            'Target="xl/workbook.xml"/></Relationships>',
-        )
-        names = "".join(f'<sheet name="{escape(s)}" sheetId="{n}" r:id="r{n}"/>' for n, s in enumerate(sheets, 1))
-        parts.writestr(
-            "xl/workbook.xml",
-            f'<workbook xmlns="{main_ns}" xmlns:r="{office}"><sheets>{names}</sheets></workbook>',
-        )
-        links = "".join(
-            f'<Relationship Id="r{n}" Type="{office}/worksheet" Target="worksheets/s{n}.xml"/>'
-            for n in range(1, len(sheets) + 1)
-        )
-        parts.writestr(
-            "xl/_rels/workbook.xml.rels", f'<Relationships xmlns="{package}relationships">{links}</Relationships>'
-        )
-        for n, rows in enumerate(sheets.values(), 1):
-            cells = "".join(
-                f'<row r="{at}">' + "".join(_cell(f"{chr(65 + c)}{at}", v) for c, v in enumerate(row)) + "</row>"
-                for at, row in enumerate(rows, 1)
-            )
-            parts.writestr(
-                f"xl/worksheets/s{n}.xml",
-                f'<worksheet xmlns="{main_ns}"><sheetData>{cells}</sheetData></worksheet>',
-            )
-    return file
-
-
-def _cell(place, value):
-    if value == "":
-        return ""
-    if isinstance(value, str):
-        return f'<c r="{place}" t="inlineStr"><is><t>{escape(value)}</t></is></c>'
-    return f'<c r="{place}"><v>{value!r}</v></c>'
-
-
-def ods(file, sheets):
-    names = "urn:oasis:names:tc:opendocument:xmlns:"
-    tables = ""
-    for name, rows in sheets.items():
-        body = ""
-        for row in rows:
-            cells = "".join(
-                f'<table:table-cell office:value-type="string"><text:p>{escape(v)}</text:p></table:table-cell>'
-                if isinstance(v, str)
-                else f'<table:table-cell office:value-type="float" office:value="{v!r}"/>'
-                for v in row
-            )
-            body += f"<table:table-row>{cells or '<table:table-cell/>'}</table:table-row>"
-        tables += f'<table:table table:name="{escape(name)}">{body}</table:table>'
-    with zipfile.ZipFile(file, "w") as parts:
-        parts.writestr("mimetype", "application/vnd.oasis.opendocument.spreadsheet")
-        parts.writestr(
-            "content.xml",
-            f'<office:document-content xmlns:office="{names}office:1.0" xmlns:table="{names}table:1.0" '
-            f'xmlns:text="{names}text:1.0" office:version="1.3"><office:body><office:spreadsheet>{tables}'
-            "</office:spreadsheet></office:body></office:document-content>",
-        )
-        parts.writestr(
-            "META-INF/manifest.xml",
-            f'<manifest:manifest xmlns:manifest="{names}manifest:1.0"><manifest:file-entry manifest:full-path="/" '
-            'manifest:media-type="application/vnd.oasis.opendocument.spreadsheet"/></manifest:manifest>',
-        )
-    return file
 
 
 @pytest.fixture

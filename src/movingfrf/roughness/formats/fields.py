@@ -352,6 +352,8 @@ def _ended(data: bytes, encoding: str, table: Table) -> Table:
     for raw in reversed(tail[1:]):
         place -= len(raw)
         text = raw.decode(encoding, "replace").rstrip("\r\n")
+        if text.count('"') % 2:  # the end of a field of several lines
+            break
         fields = table.fields(text)
         if not any(fields):
             if set(text) & {";", ",", "\t"}:  # a row of empty cells
@@ -379,7 +381,7 @@ def _fast(data: bytes, encoding: str, table: Table) -> FloatArray | None:
 
     body = memoryview(data)[_offset(data, table.first) : table.end]
     # A quotation mark that is not closed in its line would swallow others.
-    if b'"' in data and any(line.count(b'"') % 2 for line in io.BytesIO(body)):
+    if b'"' in data and not all(map(_quoting(table.separator).fullmatch, io.BytesIO(body))):
         return None
     if b"#" in data and WRITING.sharp.search(body):
         return None
@@ -408,12 +410,22 @@ def _fast(data: bytes, encoding: str, table: Table) -> FloatArray | None:
     if table.closed and frame.pop(table.width).notna().any():
         return None
     incomplete = np.flatnonzero(frame[table.width - 1].isna().to_numpy())
-    if incomplete.size and not _whole(data, encoding, table, incomplete):
+    if incomplete.size and (
+        frame.iloc[incomplete].isna().all(axis=1).any()  # some line ends make two rows of one
+        or not _whole(data, encoding, table, incomplete)
+    ):
         return None
     values = np.full(frame.shape, np.nan) if table.texts else frame.to_numpy()
     for n in set(range(table.width)) - table.texts if table.texts else ():
         values[:, n] = frame[n].to_numpy()
     return values
+
+
+def _quoting(separator: str | None) -> re.Pattern[bytes]:
+    """Match a line whose quotation marks, if it has any, enclose whole fields."""
+    sign = rb"\s" if separator is None else re.escape(separator.encode())
+    field = rb'(?:[ ]*+"(?:[^"\n]|"")*+"[ ]*+|[^"\n%s]*+)' % sign
+    return re.compile(rb"%s(?:%s%s)*+[\r\n]*+" % (field, sign, field))
 
 
 def _whole(data: bytes, encoding: str, table: Table, rows: IntArray) -> bool:
@@ -440,7 +452,7 @@ def _line_by_line(data: bytes, encoding: str, table: Table) -> Numbers:
         if len(fields) != table.width:
             fault = Line(line.number, f"expected {table.width} columns as before, got {len(fields)}")
             break
-        if "\n" in line.text and sum(map(is_number, re.split(r"[;,\s]+", line.text.split("\n", 1)[1]))):
+        if any(is_number(word) for field in fields for word in re.split(r"[;,\s]+", field.partition("\n")[2])):
             fault = Line(line.number, f"a quotation mark is not closed in its line, got {line.text[:60]!r}")
             break
         for n, field in enumerate(fields):
