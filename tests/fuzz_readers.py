@@ -65,6 +65,7 @@ def samples(folder: Path) -> dict[str, Path]:
         xlsx(folder / "road.xlsx", {"A": [["x [m]", "z [mm]"], *([x, a] for x, (a, _) in table)]})
     points = b"".join(POINT % (48 + 1e-5 * n, 9.0, 300 + n) for n in range(60))
     (folder / "track.gpx").write_bytes(GPX % points)
+    (folder / "segments.gpx").write_bytes(GPX % (points + b"</trkseg><trkseg>" + POINT % (48, 9, 300)))
     _packed(road, folder)
     return {file.name: file for file in sorted(folder.iterdir()) if file.suffix != ".bin"}
 
@@ -76,6 +77,16 @@ def _packed(road: Profile, folder: Path) -> None:
 
     values = {"x": road.stations[:, None], "z": road.columns}
     savemat(folder / "packed.mat", values, do_compression=True)
+    savemat(
+        folder / "struct.mat", {"road": {**values, "more": {"note": "dry", "runs": np.array(["a", 1.0], object)}}}
+    )
+    savemat(folder / "structs.mat", {"road": {"x": road.stations, "z": road.columns}}, do_compression=True)
+    savemat(folder / "matrix.mat", {"road": np.column_stack([road.stations, road.columns])})
+    with h5py.File(folder / "groups.nc", "w") as file:
+        file["runs/x"], file["runs/z"] = road.stations, np.int16(1e5 * road.columns)
+        file["runs/z"].attrs.update(
+            {"scale_factor": 1e-5, "valid_range": np.array([-9999, 9999], "i2"), "missing_value": "-9999"}
+        )
     with h5py.File(folder / "version73.mat", "w", userblock_size=512) as file:
         for name, value in values.items():
             file.create_dataset(name, data=value.T, compression="gzip", chunks=True)
@@ -180,7 +191,8 @@ def run(count: int, seed: int = 0, only: tuple[str, ...] = ()) -> dict[str, dict
             beside = binary.read_bytes() if binary.exists() else b""
             with multiprocessing.get_context("fork").Pool(1) as pool:
                 # Each HDF5 file and spreadsheet takes a process of its own, a hundred times the time of others.
-                share = count if name not in ("road.nc", "version73.mat", "road.xlsx") else -(-count // 10)
+                slow = ("road.nc", "groups.nc", "version73.mat", "road.xlsx")
+                share = count if name not in slow else -(-count // 10)
                 task = pool.apply_async(batch, (name, file.read_bytes(), beside, seed, share, str(work)))
                 try:
                     found[name] = task.get(timeout=60 + count)

@@ -296,6 +296,39 @@ FAULTS = [
     Fault("class of a straight line", "roughness/straight.py", "most <= _rounding(column)", "most <= FLAT"),
     Fault("digits of a file are roughness", "roughness/straight.py", "max(2 * resolution(elevation), ", "max("),
     Fault("slope per station", "roughness/straight.py", "/ (along @ along)", "/ along.size"),
+    Fault("what is not wanted is checked", "roughness/files.py", "raw = _selected(raw, paths)", "raw = raw"),
+    Fault("choice made twice", "roughness/preparation.py", "in keys and key not in reading}", "in keys}"),
+    Fault("a wild station cropped off", "roughness/steps/cropped.py", "int(there[-1]) + 1 if", "there.size if"),
+    Fault(
+        "recordings joined in silence",
+        "roughness/formats/base.py",
+        "if asked is None and len(recordings) == 1:",
+        "if asked is None:",
+    ),
+    Fault(
+        "waypoint for the name of a track", "roughness/formats/gpx.py", '(["trk"], ["rte"])', '(["wpt"], ["rte"])'
+    ),
+    Fault("time for distance", "roughness/formats/arrays.py", "raise over_time(times[0])", "pass"),
+    Fault("row for column", "roughness/formats/arrays.py", "counts(values[:, 0]) and", "False and"),
+    Fault(
+        "fields of a struct mixed up", "_basics/matlab_file.py", "names[n % len(names)]", "names[-n % len(names)]"
+    ),
+    Fault(
+        "limits of what is packed",
+        "roughness/formats/hdf_child.py",
+        "about = stored if packed else found",
+        "about = stored",
+    ),
+    Fault("single precision is uneven", "roughness/profile.py", "uneven = 0.02", "uneven = 1e-6"),
+    Fault("six digits whatever it takes", "_basics/wording.py", "range(digits, 18)", "range(digits, digits + 1)"),
+    Fault("a kerb for a marker", "roughness/sentinels.py", "if offs[value] > STANDING.steps * step", "if True"),
+    Fault("unit of a name overlooked", "roughness/formats/roles.py", "stated = words.pop()", "words.pop()"),
+    Fault(
+        "a reference followed anywhere",
+        "roughness/formats/crg.py",
+        "or not target.resolve().is_relative_to(path.parent.resolve())",
+        "or False",
+    ),
     Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
     Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
     Fault("high pass of first order", "roughness/steps/base.py", "order=FILTER.gentle", "order=1"),
