@@ -142,7 +142,7 @@ TIMED = ["t [s],z [mm]\n", "Zeit,Höhe\ns,mm\n", "time,elevation_mm\n", "# time 
 @pytest.mark.parametrize("header", TIMED)
 def test_a_record_over_time_needs_a_speed(tmp_path, header):
     file = written(tmp_path, "road.csv", header + lines("{x},{z}"))
-    with pytest.raises(ValueError, match=r"is a record over time, .*`speed` \(on the command line --speed\)"):
+    with pytest.raises(ValueError, match=r"is a record over time .*`speed` \(on the command line --speed\)"):
         mf.read_profile(file)
     profile, _ = mf.read_profile(file, speed=20.0)
     assert profile.stations == pytest.approx(20.0 * np.array(STATIONS), rel=1e-15)

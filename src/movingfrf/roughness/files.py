@@ -306,11 +306,11 @@ def _at_speed(raw: RawProfile, speed: float | None) -> RawProfile:
         raise ValueError(f"has distances of its own, so {option('speed')} is not needed")
     if speed is None:
         raise ValueError(
-            f"is a record over time, and a profile is one over distance ({raw.understood}); "
+            f"is a record over time ({raw.timed[:40]!r}) without a distance: a profile is elevation over distance; "
             f"{option('speed')} [m/s] turns times into distances, {option('columns')} chooses other columns"
         )
     done = f"turned times into distances at {speed:g} m/s"
-    return raw._replace(stations=raw.stations * speed, steps=(*raw.steps, done), timed=False)
+    return raw._replace(stations=raw.stations * speed, steps=(*raw.steps, done), timed="")
 
 
 def _on_paths(raw: RawProfile, across: FloatArray) -> RawProfile:

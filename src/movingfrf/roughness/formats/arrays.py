@@ -122,7 +122,7 @@ def raw_profile(
         across=None if across is None else scaled(across.load().ravel(), metres(across.unit or "m", "'across'")),
         place=lambda row: f"value {row + 1}",
         same_across=not others and first.is_vector and len(first.shape) < 3,
-        timed=timed,
+        timed=name if timed else "",
     )
 
 

@@ -58,7 +58,7 @@ class RawProfile(NamedTuple):
     steps: tuple[str, ...] = ()  # what was done to it before, and in reading
     place: Callable[[int], str] = _numbered  # where in the file a station stands
     same_across: bool = False  # one elevation for all paths
-    timed: bool = False  # stations are times [s]: a record over time, which a speed makes a profile
+    timed: str = ""  # name of the stations where they are times [s], which a speed turns into distances
 
 
 class Wanted(NamedTuple):

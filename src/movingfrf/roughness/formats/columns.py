@@ -89,7 +89,7 @@ def table(data: bytes, wanted: Wanted) -> RawProfile:
         _words(rows, head, taken, stated, wanted.skip_lines),
         place=place,
         same_across=len(taken.used) == 2,
-        timed=taken.timed,
+        timed=head.names[taken.used[0]] if taken.timed else "",
     )
 
 
