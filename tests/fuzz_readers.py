@@ -17,12 +17,14 @@ import time
 import traceback
 import tracemalloc
 import warnings
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 
 from movingfrf.roughness.files import FORMATS, read_profile, write_profile
 from movingfrf.roughness.profile import Profile
+from tests.spreadsheets import xlsx
 
 TIMES, FLOOR, PATIENCE = 10, 2**27, 30.0
 
@@ -54,11 +56,16 @@ def samples(folder: Path) -> dict[str, Path]:
         for encoding in form.encodings if form.made else ():
             name = f"{encoding or 'road'}{form.endings[0]}".replace(" ", "_")
             write_profile(road, folder / name, encoding=encoding or None)
-    table = zip(road.stations.tolist(), road.columns.tolist(), strict=True)
+    table = list(zip(road.stations.tolist(), road.columns.tolist(), strict=True))
     european = "Station [m];Left [mm];Right [mm]\n" + "".join(f"{x};{a};{b}\n" for x, (a, b) in table)
     (folder / "european.csv").write_text(european.replace(".", ","))
+    rows = "".join(f'{x};"joint, {x}";{a:.5f}D+00;#N/A\n' for x, (a, _) in table)
+    (folder / "remarked.txt").write_text(f'Lane 1\n\n"x, m";remark;"z, mm";temperature\n{rows}Total;;;\n')
+    if find_spec("python_calamine"):
+        xlsx(folder / "road.xlsx", {"A": [["x [m]", "z [mm]"], *([x, a] for x, (a, _) in table)]})
     points = b"".join(POINT % (48 + 1e-5 * n, 9.0, 300 + n) for n in range(60))
     (folder / "track.gpx").write_bytes(GPX % points)
+    (folder / "segments.gpx").write_bytes(GPX % (points + b"</trkseg><trkseg>" + POINT % (48, 9, 300)))
     _packed(road, folder)
     return {file.name: file for file in sorted(folder.iterdir()) if file.suffix != ".bin"}
 
@@ -70,6 +77,16 @@ def _packed(road: Profile, folder: Path) -> None:
 
     values = {"x": road.stations[:, None], "z": road.columns}
     savemat(folder / "packed.mat", values, do_compression=True)
+    savemat(
+        folder / "struct.mat", {"road": {**values, "more": {"note": "dry", "runs": np.array(["a", 1.0], object)}}}
+    )
+    savemat(folder / "structs.mat", {"road": {"x": road.stations, "z": road.columns}}, do_compression=True)
+    savemat(folder / "matrix.mat", {"road": np.column_stack([road.stations, road.columns])})
+    with h5py.File(folder / "groups.nc", "w") as file:
+        file["runs/x"], file["runs/z"] = road.stations, np.int16(1e5 * road.columns)
+        file["runs/z"].attrs.update(
+            {"scale_factor": 1e-5, "valid_range": np.array([-9999, 9999], "i2"), "missing_value": "-9999"}
+        )
     with h5py.File(folder / "version73.mat", "w", userblock_size=512) as file:
         for name, value in values.items():
             file.create_dataset(name, data=value.T, compression="gzip", chunks=True)
@@ -173,8 +190,9 @@ def run(count: int, seed: int = 0, only: tuple[str, ...] = ()) -> dict[str, dict
             binary = Path(f"{file}.bin")
             beside = binary.read_bytes() if binary.exists() else b""
             with multiprocessing.get_context("fork").Pool(1) as pool:
-                # Each HDF5 file takes a process of its own, a hundred times the time of others.
-                share = count if name not in ("road.nc", "version73.mat") else -(-count // 10)
+                # Each HDF5 file and spreadsheet takes a process of its own, a hundred times the time of others.
+                slow = ("road.nc", "groups.nc", "version73.mat", "road.xlsx")
+                share = count if name not in slow else -(-count // 10)
                 task = pool.apply_async(batch, (name, file.read_bytes(), beside, seed, share, str(work)))
                 try:
                     found[name] = task.get(timeout=60 + count)

@@ -265,7 +265,19 @@ def test_scenario_command_and_python_ask_for_steps_by_the_same_keys(tmp_path, ca
         mf.read_scenario(file)
     (said,) = [line for line in str(refused.value).splitlines() if "nonsense" in line]
     allowed = set(said.partition("allowed are ")[2].split(", "))
-    assert allowed == {*keys, "kind", "file", "format", "columns", "across", "crop_rims", "repair_gaps"}
+    reading = {
+        "file",
+        "format",
+        "columns",
+        "recording",
+        "units",
+        "speed",
+        "skip_lines",
+        "across",
+        "crop_rims",
+        "repair_gaps",
+    }
+    assert allowed == {*keys, *reading, "kind"}
     assert main(["profile", "--help"]) == 0
     shown = " ".join(capsys.readouterr().out.replace("│", " ").split())
     for key in allowed - {"kind", "file"}:
@@ -296,5 +308,5 @@ def test_an_even_step_is_one_up_to_rounding():
     decimal = mf.Profile(np.round(1e5 + 0.1 * np.arange(1000), 1), np.zeros(1000))
     assert decimal.even_step() == pytest.approx(0.1)
     thirds = mf.Profile(np.round(np.arange(1000) / 3, 3), np.zeros(1000))
-    assert thirds.even_step() is None
-    assert thirds.even_step(within=0.02) == pytest.approx(1 / 3)
+    assert thirds.even_step() == pytest.approx(1 / 3)
+    assert mf.Profile(np.round(np.arange(1000) / 30, 2), np.zeros(1000)).even_step() is None

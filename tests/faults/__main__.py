@@ -41,7 +41,12 @@ SELECTION = [
 
 # These first where the fault lies in files of profiles, what is done to them and what is said of them.
 PROFILES = [
+    "tests/test_tables.py",
     "tests/test_preparation.py",
+    "tests/test_roles.py",
+    "tests/test_recordings.py",
+    "tests/test_choice.py",
+    "tests/test_even_and_digits.py",
     "tests/test_readers.py",
     "tests/test_readers_binary.py",
     "tests/test_profile_description.py",
@@ -55,7 +60,9 @@ ABOUT_PROFILES = (
     "roughness/profile",
     "metrics/profile",
     "reports/profile",
+    "roughness/sentinels",
     "_basics/matlab",
+    "_basics/wording",
 )
 
 # These first where the fault lies in what is shown: figures, tables, files.

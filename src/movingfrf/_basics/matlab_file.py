@@ -49,11 +49,15 @@ class Level5:
     # Classes of arrays; numeric ones are double, single, and whole numbers of all sizes.
     numeric: range
     cell: int
+    structs: tuple[int, ...]  # and objects, which are stored alike
     text: int
+    others: Mapping[int, str]  # what is not read, in words
     complex_flag: int  # beside the class
     # What names may not be in MATLAB, and how many letters they have at most.
     reserved: frozenset[str]
     longest_name: int
+    int8: int  # type of an element
+    deepest: int  # structs within structs [a convention]
 
 
 LEVEL_5 = Level5(
@@ -63,13 +67,23 @@ LEVEL_5 = Level5(
     numbers={1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"},
     numeric=range(6, 16),
     cell=1,
+    structs=(2, 3),
     text=4,
+    others={
+        2: "a struct in very many others",
+        3: "an object in very many others",
+        5: "a sparse matrix",
+        16: "a function",
+        17: "an object such as a table; save its columns, or table2struct(…, 'ToScalar', true)",
+    },
     complex_flag=0x0800,
     reserved=frozenset(
         "break case catch classdef continue else elseif end for function global if otherwise parfor persistent "
         "return spmd switch try while".split()
     ),
     longest_name=63,
+    int8=1,
+    deepest=8,
 )
 
 
@@ -89,10 +103,13 @@ class Stored(NamedTuple):
 
 
 class Contents(NamedTuple):
-    """What a file holds, by name; texts are read when asked for, too."""
+    """What a file holds, by name; numbers and texts are read when asked for."""
 
     numbers: dict[str, Stored]
     texts: dict[str, Callable[[], list[str]]]
+    # Numbers in the fields of structs, `road.distance`; of several structs in one array, `road(2).distance`.
+    fields: dict[str, Stored]
+    unread: dict[str, str]  # what else there is, and what it is
 
 
 def arrays_and_texts(data: bytes) -> Contents:
@@ -106,7 +123,7 @@ def arrays_and_texts(data: bytes) -> Contents:
     Returns
     -------
     Contents
-        Arrays of real numbers, read when asked for, and texts: arrays of characters, and cells that hold such.
+        Arrays of real numbers, also those in structs, and texts: arrays of characters, and cells that hold such.
 
     Raises
     ------
@@ -116,34 +133,85 @@ def arrays_and_texts(data: bytes) -> Contents:
     order = {b"IM": "<", b"MI": ">"}.get(data[126:128])
     if order is None:
         raise ValueError("is no MATLAB file of version 5 or 7.3; save it anew with -v7 or -v7.3")
-    numbers: dict[str, Stored] = {}
-    texts: dict[str, Callable[[], list[str]]] = {}
+    found = Contents({}, {}, {}, {})
     for element in _elements(memoryview(data)[LEVEL_5.header :], order):
         read_all = partial(_unpacked, element, len(data))
         kind, packed = element.kind, element.kind == LEVEL_5.compressed
         beginning = _unpacked(element, len(data), UNPACKING.beginning) if packed else element.data
         if packed:
             kind, beginning, _ = next(_elements(memoryview(beginning), order, partly=True), Element(0, b"", 0))
-        if kind != LEVEL_5.matrix:
-            continue
-        parts = list(_elements(memoryview(beginning), order, partly=True, most=3))
-        if len(parts) == 3 and len(parts[0].data) >= 4:
-            (flags,) = struct.unpack(f"{order}I", parts[0].data[:4])
-            name = bytes(parts[2].data).decode("latin-1")
-            if flags & 0xFF in LEVEL_5.numeric and not flags & LEVEL_5.complex_flag and len(parts[1].data) % 4 == 0:
-                shape = tuple(np.frombuffer(parts[1].data, f"{order}i4").tolist())
-                numbers[name] = Stored(shape, partial(_numbers, read_all, packed, shape, order, name))
-            elif flags & 0xFF in (LEVEL_5.cell, LEVEL_5.text):
-                texts[name] = partial(_texts, read_all, packed, order, flags & 0xFF)
-    return Contents(numbers, texts)
+        if kind == LEVEL_5.matrix:
+            _sort_in(found, _Matrix(read_all, packed, order, beginning), "")
+    return found
 
 
-def _texts(read_all: Callable[[], bytes], packed: bool, order: str, kind: int) -> list[str]:
+class _Matrix(NamedTuple):
+    """An array of any class, and how to read all of it."""
+
+    read_all: Callable[[], bytes]
+    packed: bool
+    order: str
+    beginning: bytes
+
+    def parts(self, most: int = 2**31) -> list[Element]:
+        """Elements that it consists of: flags, sizes, name and what its class has."""
+        data = memoryview(self.read_all())
+        return list(
+            _elements(
+                memoryview(next(_elements(data, self.order)).data) if self.packed else data, self.order, most=most
+            )
+        )
+
+
+def _sort_in(found: Contents, matrix: _Matrix, within: str, depth: int = 0) -> None:
+    """Put an array where it belongs by its class; what a struct holds is called by its own name and the field's."""
+    order = matrix.order
+    parts = list(_elements(memoryview(matrix.beginning), order, partly=True, most=3))
+    if len(parts) < 3 or len(parts[0].data) < 4:
+        return
+    (flags,) = struct.unpack(f"{order}I", parts[0].data[:4])
+    kind = flags & 0xFF
+    name = within or bytes(parts[2].data).decode("latin-1")
+    shape = tuple(np.frombuffer(parts[1].data, f"{order}i4").tolist()) if len(parts[1].data) % 4 == 0 else None
+    if kind in LEVEL_5.numeric and not flags & LEVEL_5.complex_flag and shape is not None:
+        stored = Stored(shape, partial(_numbers, matrix, shape, name))
+        (found.fields if within else found.numbers)[name] = stored
+    elif kind in (LEVEL_5.cell, LEVEL_5.text):
+        if not within:
+            found.texts[name] = partial(_texts, matrix, kind)
+        if kind == LEVEL_5.cell:
+            found.unread[name] = "a cell array"
+    elif kind in LEVEL_5.structs and depth < LEVEL_5.deepest:
+        _open_struct(found, matrix, name, depth)
+    else:
+        found.unread[name] = LEVEL_5.others.get(kind, "an array of complex numbers")
+
+
+def _open_struct(found: Contents, matrix: _Matrix, name: str, depth: int) -> None:
+    order, parts = matrix.order, matrix.parts()
+    objects = len(parts) > 3 and parts[3].kind == LEVEL_5.int8  # they have a name of their class there
+    parts = parts[:3] + parts[3 + objects :]
+    if len(parts) < 5 or len(parts[3].data) < 4:
+        raise ValueError(f"is damaged: the struct {name!r} has no fields")
+    (length,) = struct.unpack(f"{order}i", parts[3].data[:4])
+    if length < 1:
+        raise ValueError(f"is damaged: the struct {name!r} has names of {length} bytes")
+    text = bytes(parts[4].data)
+    names = [text[at : at + length].partition(b"\0")[0].decode("latin-1") for at in range(0, len(text), length)]
+    fields = parts[5:]
+    for n, part in enumerate(fields if names else ()):
+        own = name if len(fields) <= len(names) else f"{name}({n // len(names) + 1})"
+        inner = _Matrix(partial(_itself, part.data), False, order, part.data)
+        _sort_in(found, inner, f"{own}.{names[n % len(names)]}", depth + 1)
+
+
+def _itself(data: bytes) -> bytes:
+    return data
+
+
+def _texts(matrix: _Matrix, kind: int) -> list[str]:
     """One text, or those in the cells of an array."""
-    data = memoryview(read_all())
-    if packed:
-        data = memoryview(next(_elements(data, order)).data)
-    parts = list(_elements(data, order))[3:]
+    order, parts = matrix.order, matrix.parts()[3:]
     if kind == LEVEL_5.text:
         return [_decoded(part, order) for part in parts[:1]]
     cells = [list(_elements(memoryview(part.data), order)) for part in parts if part.kind == LEVEL_5.matrix]
@@ -192,13 +260,8 @@ def _unpacked(element: Element, file_size: int, most: int = 0) -> bytes:
     return data
 
 
-def _numbers(
-    read_all: Callable[[], bytes], packed: bool, shape: tuple[int, ...], order: str, name: str
-) -> FloatArray:
-    data = memoryview(read_all())
-    if packed:
-        data = memoryview(next(_elements(data, order)).data)
-    parts = list(_elements(data, order, most=4))
+def _numbers(matrix: _Matrix, shape: tuple[int, ...], name: str) -> FloatArray:
+    order, parts = matrix.order, matrix.parts(most=4)
     kind = parts[3].kind if len(parts) == 4 else 0
     if kind not in LEVEL_5.numbers:
         raise ValueError(f"is damaged: the array {name!r} has no numbers")

@@ -78,6 +78,40 @@ def in_both_units(speed: float, *, in_kmh: bool = False) -> tuple[str, str]:
     return f"{plain(given[0])} {given[1]}", f"{plain(float(f'{other[0]:.4g}'))} {other[1]}"
 
 
+def told_apart(*values: float, digits: int = 6) -> tuple[str, ...]:
+    """Write numbers that a sentence compares with as many digits as it takes to see that they differ.
+
+    Parameters
+    ----------
+    *values : float
+        The numbers.
+    digits : int
+        Significant digits at the least.
+
+    Returns
+    -------
+    tuple of str
+        One text for each; texts are equal where numbers are.
+
+    Examples
+    --------
+    >>> told_apart(523417.6, 523417.5), told_apart(0.1, 1200.0), told_apart(523418.0, 523418.0)
+    (('523417.6', '523417.5'), ('0.1', '1200'), ('523418', '523418'))
+    """
+    for enough in range(digits, 18):
+        texts = tuple(_positional(value, enough) for value in values)
+        if len(set(texts)) == len(set(values)):
+            break
+    return texts
+
+
+def _positional(value: float, digits: int) -> str:
+    """Write so many digits of a number, powers of ten only where nobody would write it in full."""
+    text = f"{value:.{digits}g}"
+    in_full = "e" in text and 1e-4 <= abs(value) < 1e15
+    return np.format_float_positional(float(text), trim="-") if in_full else text
+
+
 def is_never(value: float, units: str) -> bool:
     """Tell whether a rate or a share is too small for its digits to mean anything."""
     return units in ("1/s", "1") and 0 < value < NEVER

@@ -56,6 +56,7 @@ def _whole(option: str, typed: float) -> int:
 # 1.5 would be rounded on the way to an int.
 TYPED: dict[Any, Typed] = {
     Sequence[ColumnKey] | None: Typed(str | None, _columns),
+    Sequence[str] | None: Typed(str | None, lambda option, typed: _words(option, typed) or None),
     Sequence[float] | None: Typed(str | None, partial(_numbers, float)),
     Sequence[int] | None: Typed(str | None, partial(_numbers, int)),
     int | None: Typed(float | None, _whole),

@@ -10,6 +10,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.wording import told_apart
 from movingfrf.results.findings import Finding, announced
 from movingfrf.roughness.profile import Profile, require_profile
 
@@ -22,9 +23,6 @@ class Procedure:
     average: float = 0.25  # length over which a tyre and the standards average a profile [m]
     start: float = 11.0  # length of the profile whose slope the car has at its start: half a second [m]
     longest_step: float = 0.3 * (1 + 1e-6)  # the standards' between stations [m], and the rounding of a file's
-    # How far a station may lie from an even grid, as a share of the step: the rounding of a file's stations, 0.01
-    # for whole millimetres at steps of 50; a tenth moves the index by up to 0.3 % [0.01 to 0.1].
-    uneven: float = 0.02
     # Straight pieces up to this long are not held against the spline: they cost the index 0.4 % and the ride number
     # 0.02 [0.05 to 0.12 m].
     short: float = 0.1
@@ -157,7 +155,7 @@ def coarse_for_index(profile: Profile, average: float = PROCEDURE.average) -> li
 
 
 def _coarse(profile: Profile, telling: bool, by: str, cost: float) -> list[Finding]:
-    way, step = "lower" if cost < 0 else "higher", profile.even_step(PROCEDURE.uneven)
+    way, step = "lower" if cost < 0 else "higher", profile.even_step()
     words = (
         f"the {by} {way} on straight pieces of {step:.3g} m, as the standard has them, than on the spline through "
         "the same stations: closer stations would tell"
@@ -167,7 +165,7 @@ def _coarse(profile: Profile, telling: bool, by: str, cost: float) -> list[Findi
 
 def _straight_and_smooth(profile: Profile) -> tuple[Profile, Profile] | None:
     """Take the beginning of a profile, and its spline at a fine step; None where it is fine itself."""
-    step = profile.even_step(PROCEDURE.uneven) or 0.0
+    step = profile.even_step() or 0.0
     if step <= PROCEDURE.short:
         return None
     count = min(profile.stations.size, int(PROCEDURE.looked_at / step))
@@ -252,7 +250,7 @@ def _segments(
     measure: Callable[[FloatArray], FloatArray],
 ) -> FloatArray:
     """Mean of a measure of the suspension's slope (ż_s − ż_u)/V over each segment, shape (segment, path)."""
-    step, length = profile.even_step(PROCEDURE.uneven) or 0.0, float(np.ptp(profile.stations))
+    step, length = profile.even_step() or 0.0, float(np.ptp(profile.stations))
     with checking() as check:
         average = check.not_negative("average", average, "m")
         # A whole window, a fraction of a step at either end of it, and a step to measure.
@@ -260,11 +258,14 @@ def _segments(
         if not step:
             check.refuse("profile", "must have stations at even steps [m]; resample it first")
         elif step > PROCEDURE.longest_step:
-            check.refuse("profile", f"must have a step of at most {PROCEDURE.longest_step:g} m, got {step:g} m")
+            most, got = told_apart(PROCEDURE.longest_step, step)
+            check.refuse("profile", f"must have a step of at most {most} m, got {got} m")
         if length < PROCEDURE.start:
-            check.refuse("profile", f"must be at least {PROCEDURE.start:g} m long, got {length:g} m")
+            least, got = told_apart(PROCEDURE.start, length)
+            check.refuse("profile", f"must be at least {least} m long, got {got} m")
         elif shortest > length:
-            check.refuse("average", f"must leave something of the profile's {length:g} m, got {average:g} m")
+            most, got = told_apart(length, average)
+            check.refuse("average", f"must leave something of the profile's {most} m, got {got} m")
         elif segment is not None and not shortest <= (
             segment := check.positive("segment", segment, "m")
         ) <= length * (1 + 1e-9):

@@ -13,6 +13,7 @@ from movingfrf._basics.checks import Checks, checking, real_numbers
 from movingfrf._basics.door import mistaken
 from movingfrf._basics.spline import cubic
 from movingfrf._basics.values import Value
+from movingfrf._basics.wording import told_apart
 from movingfrf.results.labels import flaws, resolved, time_step_of
 
 if TYPE_CHECKING:
@@ -176,9 +177,10 @@ def aggregate_force(
     numbers = np.unique(paths)
     points = common_points(result, spacing)
     if not points.size:
+        apart, covered = told_apart(np.ptp(starts), speed * np.ptp(time))
         raise ValueError(
             "result must be long enough for every contact to pass one point: contacts lie up to "
-            f"{np.ptp(starts):g} m apart, and the record covers {speed * np.ptp(time):g} m"
+            f"{apart} m apart, and the record covers {covered} m"
         )
     found, rest = np.zeros((points.size, numbers.size)), np.zeros(numbers.size)
     for contact, start in enumerate(starts):

@@ -12,11 +12,12 @@ from movingfrf._basics.arrays import FloatArray, finite
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.values import Value, brief
 from movingfrf._basics.welch import Spectra
-from movingfrf._basics.wording import evenly_spread, named_paths
+from movingfrf._basics.wording import evenly_spread, named_paths, plain, told_apart
 from movingfrf.metrics.iri import PROCEDURE, coarse_for_index, straight_index
 from movingfrf.metrics.spectra import path_spectra
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
 from movingfrf.roughness.profile import Profile, require_profile
+from movingfrf.roughness.sentinels import Sentinel, sentinels
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES
 from movingfrf.roughness.steps.resampled import resampled
 from movingfrf.roughness.steps.selected import selected
@@ -165,14 +166,15 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
     ]
     numbers = [alike[n][0] for n in evenly_spread(len(alike))]
     described = selected(profile, paths=numbers) if len(numbers) < profile.paths else profile
-    step = described.even_step(PROCEDURE.uneven)
+    step = described.even_step()
     if step is None:
         progress("even stations", 0.0)
         step = float(np.median(steps))
         described = resampled(described, step=step)
+        shortest, longest = told_apart(steps.min(), steps.max(), digits=4)
         findings.append(
-            f"Stations are uneven, {steps.min():.4g} to {steps.max():.4g} m apart: spectra and indices are taken "
-            f"from the cubic spline at steps of {step:.4g} m."
+            f"Stations are uneven, {shortest} to {longest} m apart: spectra and indices are taken from the cubic "
+            f"spline at steps of {step:.4g} m."
         )
     indices, reason = _indices(described, step, progress)
     progress("spectra", 0.0)
@@ -184,6 +186,7 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
         findings.append(reason)
     elif indices:
         findings += [f"{_sentence(finding.message)}." for finding in coarse_for_index(described)]
+    findings += [_missing(each) for each in sentinels(profile.columns)]
     paths = []
     for n, number in enumerate(numbers):
         progress("paths", n / len(numbers))
@@ -316,13 +319,11 @@ def _indices(even: Profile, step: float, progress: Progress) -> tuple[dict[float
     """Roughness index of the whole (at 0) and of segments, and why there is none."""
     length = float(np.ptp(even.stations))
     if step > PROCEDURE.longest_step:
-        return (
-            {},
-            f"The roughness index needs a step of at most {PROCEDURE.longest_step:.2g} m, and there is one of "
-            f"{step:.4g} m.",
-        )
+        most, got = told_apart(PROCEDURE.longest_step, step, digits=2)
+        return {}, f"The roughness index needs a step of at most {most} m, and there is one of {got} m."
     if length < PROCEDURE.start:
-        return {}, f"The roughness index needs {PROCEDURE.start:g} m of road, and there are {length:.4g} m."
+        least, got = told_apart(PROCEDURE.start, length, digits=4)
+        return {}, f"The roughness index needs {least} m of road, and there are {got} m."
     # Segments of 20 m and 100 m [a convention].
     wanted = [0.0, *(span for span in (20.0, 100.0) if step * 4 + PROCEDURE.average < span <= length)]
     found = {}
@@ -362,6 +363,15 @@ def _doubts(paths: list[PathDescription]) -> list[str]:
         _sentence(words if len(numbers) == len(paths) else f"{named_paths(numbers)}: {words}")
         for words, numbers in said.items()
     ]
+
+
+def _missing(value: Sentinel) -> str:
+    """Say that a value is hardly an elevation."""
+    where = "1 elevation is" if value.number == 1 else f"{value.number} elevations are"
+    return (
+        f"{where} {plain(value.value)} m, {value.off:.4g} m from the nearest other one: more likely a marker of "
+        "missing values than the road; leave such values empty in the file, or crop them off."
+    )
 
 
 def _sentence(words: str) -> str:

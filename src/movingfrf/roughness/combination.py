@@ -8,6 +8,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.wording import told_apart
 from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import changed, like
 
@@ -181,7 +182,8 @@ def _shared_stations(profiles: Sequence[Profile]) -> FloatArray:
     first = max(profile.stations[0] for profile in profiles)
     last = min(profile.stations[-1] for profile in profiles)
     if first >= last:
-        reaches = "; ".join(f"{p.stations[0]:g} m to {p.stations[-1]:g} m" for p in profiles)
+        ends = told_apart(*(profile.stations[end] for profile in profiles for end in (0, -1)))
+        reaches = "; ".join(f"{one} m to {other} m" for one, other in zip(ends[::2], ends[1::2], strict=True))
         raise ValueError(f"the profiles must share an interval, but they reach from {reaches}")
     # Stations nearer to each other than this share of the smallest step count as one: at 500 km they are rounded to
     # 1e-10 m, and steps are a millimetre at the least; the sum is off by about this share of its change over a step

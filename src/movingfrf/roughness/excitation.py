@@ -20,7 +20,7 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.enveloping import enveloping
 from movingfrf._basics.smooth import memory, onward, smooth_step, smooth_step_slope
 from movingfrf._basics.spline import Piecewise, cubic
-from movingfrf._basics.wording import count
+from movingfrf._basics.wording import count, told_apart
 from movingfrf.roughness.profile import SLACK, Profile
 
 
@@ -393,9 +393,10 @@ def require_cover(profile: Profile, first: float, last: float, paths: Sequence[i
     stations = profile.stations
     slack = SLACK * (1 + abs(last))
     if stations[0] > first + slack or stations[-1] < last - slack:
+        begins, ends, from_here, to_there = told_apart(first, last, stations[0], stations[-1])
         raise ValueError(
-            f"the profile must cover the journey from {first:.6g} m to {last:.6g} m, "
-            f"but it reaches from {stations[0]:.6g} m to {stations[-1]:.6g} m"
+            f"the profile must cover the journey from {begins} m to {ends} m, but it reaches from {from_here} m to "
+            f"{to_there} m"
         )
     if not profile.same_across and max(paths) >= profile.paths:
         raise ValueError(

@@ -11,11 +11,13 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ParameterError, checking, option, shown, spelt
 from movingfrf._basics.output import Content, behind_links, replacing
-from movingfrf._basics.wording import count
+from movingfrf._basics.wording import count, told_apart
 from movingfrf.roughness.formats import columns as text
-from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
+from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file, sheets
+from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, Wanted
 from movingfrf.roughness.profile import Profile, require_profile
+from movingfrf.roughness.steps.cropped import cropping, within
+from movingfrf.roughness.steps.selected import path_numbers, selecting
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -29,6 +31,7 @@ FORMATS = {
         netcdf.FORMAT,
         numpy_file.FORMAT,
         gpx.FORMAT,
+        sheets.FORMAT,
         text.FORMAT,
     )
 }
@@ -67,7 +70,14 @@ def read_profile(
     *,
     format: str | None = None,
     columns: Sequence[ColumnKey] | None = None,
+    recording: str | None = None,
+    units: Sequence[str] | None = None,
+    speed: float | None = None,
+    skip_lines: int | None = None,
+    first: float | None = None,
+    last: float | None = None,
     across: Sequence[float] | None = None,
+    paths: Sequence[int] | None = None,
     crop_rims: bool = False,
     repair_gaps: float | None = None,
 ) -> ReadProfile:
@@ -85,9 +95,24 @@ def read_profile(
     columns : sequence of str or int, optional
         The columns, channels or arrays to take: the station, then elevations. Names, or numbers counted from 0. Of
         an ERD file, which has no stations, elevations only.
+    recording : str, optional
+        Name of the recording to take of a file that holds several: a track or a segment of it, a route, a struct, a
+        group, a sheet. They are never joined; without it such a file is refused, with names and lengths.
+    units : sequence of str, optional
+        Units of the stations and of the elevations, instead of those in the file: "ft", "in".
+    speed : float, optional
+        Constant speed [m/s] of a record over time, whose times it turns into distances.
+    skip_lines : int, optional
+        Number of lines at the beginning of a text to leave out, where it is not plain where the table begins.
+    first : float, optional
+        Distance from which stations are kept [m]; from the beginning by default.
+    last : float, optional
+        Distance to which stations are kept [m]; to the end by default.
     across : sequence of float, optional
         Lateral positions of the paths to take from a grid [m], left positive; interpolated between its long
         sections. All of these are paths by default, from left to right.
+    paths : sequence of int, optional
+        Number of each path to take, counted from 0. What these four do not take is not checked either.
     crop_rims : bool
         Whether to leave out what a grid has no elevation for: long sections at either side (unless `across` chooses
         them), then stations at either end.
@@ -126,18 +151,38 @@ def read_profile(
             isinstance(columns, (list, tuple)) and all(type(column) in (str, int) for column in columns)
         ):
             check.refuse("columns", f"must be a list of names or numbers of columns, got {shown(columns)}")
+        if units is not None and not (
+            isinstance(units, (list, tuple)) and len(units) > 1 and all(isinstance(unit, str) for unit in units)
+        ):
+            check.refuse(
+                "units", f"must be a list of units, of the stations and of the elevations, got {shown(units)}"
+            )
+        if speed is not None:
+            speed = check.positive("speed", speed, "m/s")
+        if skip_lines is not None:
+            skip_lines = check.whole("skip_lines", skip_lines, least=0)
         if not isinstance(crop_rims, bool):
             check.refuse("crop_rims", f"must be true or false, got {shown(crop_rims)}")
+        first = first if first is None else check.finite("first", first, "m")
+        last = last if last is None else check.finite("last", last, "m")
+        if recording is not None:
+            recording = check.text("recording", recording)
         if format is not None:
             format = check.choice("format", format, FORMATS)
     try:
         form = _recognised(path, format)
-        raw = form.read(path, columns)
+        if recording is not None and not form.several:
+            raise ValueError(f"is {form.title}, which holds one recording: {option('recording')} has no choice")
+        raw = form.read(path, _understood_by(form, Wanted(columns, recording, units, skip_lines or 0)))
+        raw = _at_speed(raw, speed)
+        # What is chosen is chosen before anything is checked: what lies outside may be as it likes.
+        raw = _cropped(raw, first, last)
         if wanted is not None:
             raw = _on_paths(raw, wanted)
         if crop_rims:
-            raw = _cropped_rims(raw, sides=wanted is None and raw.across is not None)
-        raw = _completed(raw, repair_gaps)
+            raw = _cropped_sides(raw) if wanted is None and raw.across is not None else raw
+        raw = _selected(raw, paths)
+        raw = _completed(_cropped_ends(raw) if crop_rims else raw, repair_gaps)
         profile = Profile(
             raw.stations,
             raw.elevations[:, 0] if raw.same_across else raw.elevations,
@@ -146,6 +191,8 @@ def read_profile(
             across=None if raw.across is None else tuple(raw.across.tolist()),
         )
     except ParameterError as error:
+        if {fault.name for fault in error.faults} <= {"first", "last", "paths"}:
+            raise
         raise ValueError(f"{path}: {error}") from None
     except OSError as error:
         raise ValueError(f"cannot read {path}: {error.strerror or error}") from None
@@ -243,6 +290,30 @@ def _recognised(path: Path, name: str | None) -> Format:
     return shown or text.FORMAT
 
 
+def _understood_by(form: Format, wanted: Wanted) -> Wanted:
+    """Refuse what a format does not understand."""
+    for name in ("units", "skip_lines"):
+        if getattr(wanted, name) and name not in form.takes:
+            those = ", ".join(other.title for other in FORMATS.values() if name in other.takes)
+            raise ValueError(f"{option(name)} is for {those}, and this is {form.title}")
+    return wanted
+
+
+def _at_speed(raw: RawProfile, speed: float | None) -> RawProfile:
+    """Turn times into distances."""
+    if not raw.timed and speed is None:
+        return raw
+    if not raw.timed:
+        raise ValueError(f"has distances of its own, so {option('speed')} is not needed")
+    if speed is None:
+        raise ValueError(
+            f"is a record over time ({raw.timed[:40]!r}) without a distance: a profile is elevation over distance; "
+            f"{option('speed')} [m/s] turns times into distances, {option('columns')} chooses other columns"
+        )
+    done = f"turned times into distances at {speed:g} m/s"
+    return raw._replace(stations=raw.stations * speed, steps=(*raw.steps, done), timed="")
+
+
 def _on_paths(raw: RawProfile, across: FloatArray) -> RawProfile:
     """Interpolate a grid at lateral positions."""
     if raw.across is None:
@@ -258,9 +329,9 @@ def _on_paths(raw: RawProfile, across: FloatArray) -> RawProfile:
     rounding = 1e-9
     outside = (across < grid[0] - rounding) | (across > grid[-1] + rounding)
     if outside.any():
+        rightmost, leftmost, asked = told_apart(grid[0], grid[-1], across[outside][0])
         raise ValueError(
-            f"reaches from {grid[0]:g} m (right) to {grid[-1]:g} m (left), but {option('across')} asks "
-            f"for {across[outside][0]:g} m"
+            f"reaches from {rightmost} m (right) to {leftmost} m (left), but {option('across')} asks for {asked} m"
         )
     if grid.size == 1:
         return raw._replace(elevations=raw.elevations[:, [0] * across.size], across=across, same_across=False)
@@ -273,36 +344,68 @@ def _on_paths(raw: RawProfile, across: FloatArray) -> RawProfile:
     return raw._replace(elevations=elevations, across=across, same_across=False)
 
 
-def _cropped_rims(raw: RawProfile, *, sides: bool) -> RawProfile:
-    """Leave out what has no elevation at the sides of a grid, if asked, and at its ends."""
-    missing = np.isnan(raw.elevations)
-    steps = list(raw.steps)
-    left, right = 0, missing.shape[1]
-    if sides:
-        full = np.flatnonzero(~missing.any(axis=0))
-        if not full.size:
-            raise ValueError(
-                f"has no long section with an elevation at every station: choose paths by {option('across')}"
-            )
-        left, right = int(full[0]), int(full[-1]) + 1
-    kept = np.flatnonzero(~missing[:, left:right].any(axis=1))
-    if not kept.size:
-        raise ValueError("has no station with an elevation on every path")
-    first, last = int(kept[0]), int(kept[-1]) + 1
-    if (left, right) != (0, missing.shape[1]):
-        steps.append(
-            f"left out {count(left, 'long section')} at the left rim and {missing.shape[1] - right} at the right"
-        )
-    if (first, last) != (0, len(missing)):
-        steps.append(f"left out {count(first, 'station')} at the beginning and {len(missing) - last} at the end")
+def _cropped(raw: RawProfile, first: float | None, last: float | None) -> RawProfile:
+    """Take the stations from one distance to another, and everything between them."""
+    if first is None and last is None:
+        return raw
+    begin, end = within(raw.stations, first, last)
+    return _part(raw, begin, end)._replace(steps=(*raw.steps, cropping(raw.stations, first, last)))
+
+
+def _selected(raw: RawProfile, paths: Sequence[int] | None) -> RawProfile:
+    """Take some of the paths."""
+    if paths is None:
+        return raw
+    numbers = path_numbers(paths, raw.elevations.shape[1])
+    return raw._replace(
+        elevations=raw.elevations[:, numbers],
+        across=None if raw.across is None or raw.across.size != raw.elevations.shape[1] else raw.across[numbers],
+        same_across=False,
+        steps=(*raw.steps, selecting(numbers)),
+    )
+
+
+def _part(raw: RawProfile, first: int, last: int) -> RawProfile:
+    """Take the stations from one number to another, which is not among them."""
     place = raw.place
     return raw._replace(
         stations=raw.stations[first:last],
-        elevations=raw.elevations[first:last, left:right],
-        across=None if raw.across is None else raw.across[left:right],
-        steps=tuple(steps),
+        elevations=raw.elevations[first:last],
         place=lambda row: place(row + first),
     )
+
+
+def _cropped_sides(raw: RawProfile) -> RawProfile:
+    """Leave out the long sections at the sides of a grid up to the first that is whole."""
+    missing = np.isnan(raw.elevations)
+    full = np.flatnonzero(~missing.any(axis=0))
+    if not full.size:
+        raise ValueError(
+            f"has no long section with an elevation at every station: choose paths by {option('across')}"
+        )
+    left, right = int(full[0]), int(full[-1]) + 1
+    if (left, right) == (0, missing.shape[1]):
+        return raw
+    return raw._replace(
+        elevations=raw.elevations[:, left:right],
+        across=None if raw.across is None else raw.across[left:right],
+        steps=(
+            *raw.steps,
+            f"left out {left} long sections at the left rim and {missing.shape[1] - right} at the right",
+        ),
+    )
+
+
+def _cropped_ends(raw: RawProfile) -> RawProfile:
+    """Leave out the stations at either end that have no elevation on every path."""
+    kept = np.flatnonzero(~np.isnan(raw.elevations).any(axis=1))
+    if not kept.size:
+        raise ValueError("has no station with an elevation on every path")
+    first, last, count = int(kept[0]), int(kept[-1]) + 1, len(raw.elevations)
+    if (first, last) == (0, count):
+        return raw
+    said = f"left out {first} stations at the beginning and {count - last} at the end"
+    return _part(raw, first, last)._replace(steps=(*raw.steps, said))
 
 
 def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
@@ -313,10 +416,8 @@ def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
     falls = np.flatnonzero(np.diff(raw.stations) <= 0)
     if falls.size:
         n = int(falls[0])
-        raise ValueError(
-            f"{raw.place(n + 1)}: distance must increase, got {raw.stations[n]:g} m followed by "
-            f"{raw.stations[n + 1]:g} m"
-        )
+        one, next_one = told_apart(raw.stations[n], raw.stations[n + 1])
+        raise ValueError(f"{raw.place(n + 1)}: distance must increase, got {one} m followed by {next_one} m")
     infinite = np.argwhere(np.isinf(raw.elevations))
     if infinite.size:
         raise ValueError(f"{raw.place(int(infinite[0][0]))}: elevation must be finite, got inf")
@@ -333,9 +434,11 @@ def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
             f"{option('crop_rims')} leaves out the rims of a grid"
         )
     if longest.length > repair_gaps:
+        long, allowed = told_apart(longest.length, repair_gaps, digits=4)
         raise ValueError(
-            f"{raw.place(longest.first)}: the gap {_at(raw, longest)} is {_long(longest)}, and "
-            f"{option('repair_gaps')} allows {repair_gaps:g} m"
+            f"{raw.place(longest.first)}: the gap {_at(raw, longest)} is "
+            f"{f'{long} m long' if np.isfinite(longest.length) else _long(longest)}, and "
+            f"{option('repair_gaps')} allows {allowed} m"
         )
     elevations = raw.elevations.copy()
     for path in {gap.path for gap in gaps}:
@@ -387,8 +490,9 @@ def _sentence(name: str, profile: Profile, raw: RawProfile) -> str:
     stations, elevation = profile.stations, profile.columns
     step = profile.even_step()
     steps = np.diff(stations)
-    spacing = f"{step:.4g} m" if step is not None else f"{steps.min():.4g}–{steps.max():.4g} m"
+    spacing = f"{step:.4g}" if step is not None else "–".join(told_apart(steps.min(), steps.max(), digits=4))
+    first, last = told_apart(stations[0], stations[-1])
     return (
-        f"{name}: {stations.size} stations from {stations[0]:g} m to {stations[-1]:g} m every {spacing}, "
+        f"{name}: {stations.size} stations from {first} m to {last} m every {spacing} m, "
         f"{count(profile.paths, 'path')}, elevation {elevation.min():g} to {elevation.max():g} m, {raw.understood}"
     )

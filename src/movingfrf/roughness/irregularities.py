@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.smooth import smooth_step
+from movingfrf._basics.wording import told_apart
 from movingfrf.roughness.profile import Profile
 
 
@@ -141,7 +142,8 @@ def pothole(*, depth: float, width: float, edge: float, at: float, length: float
             check.refuse("depth", "must not be zero")
         width = check.positive("width", width, "m")
         if (edge := check.positive("edge", edge, "m")) > width / 2:
-            check.refuse("edge", f"must be at most half of the width, {width / 2:g} m, got {edge:g} m")
+            most, got = told_apart(width / 2, edge)
+            check.refuse("edge", f"must be at most half of the width, {most} m, got {got} m")
         length = check.positive("length", length, "m")
         at = check.finite("at", at, "m")
         start = check.finite("start", start, "m")
@@ -196,7 +198,8 @@ def faulted_slabs(
             check.refuse("height", "must not be zero")
         spacing = check.positive("spacing", spacing, "m")
         if (edge := check.positive("edge", edge, "m")) > spacing / 2:
-            check.refuse("edge", f"must be at most half of the spacing, {spacing / 2:g} m, got {edge:g} m")
+            most, got = told_apart(spacing / 2, edge)
+            check.refuse("edge", f"must be at most half of the spacing, {most} m, got {got} m")
         length = check.positive("length", length, "m")
         at = check.finite("at", at, "m")
         start = check.finite("start", start, "m")
@@ -272,9 +275,8 @@ def dipped_joints(
         reach = check.positive("reach", reach, "m")
         rounding = check.positive("rounding", rounding, "m")
         if (spacing := check.positive("spacing", spacing, "m")) < 2 * (reach + rounding) and not check.faults:
-            check.refuse(
-                "spacing", f"must be at least {2 * (reach + rounding):g} m, two rail ends, got {spacing:g} m"
-            )
+            least, got = told_apart(2 * (reach + rounding), spacing)
+            check.refuse("spacing", f"must be at least {least} m, two rail ends, got {got} m")
         length = check.positive("length", length, "m")
         at = check.finite("at", at, "m")
         start = check.finite("start", start, "m")
@@ -419,7 +421,8 @@ def wheel_flat(
     with checking() as check:
         radius = check.positive("radius", radius, "m")
         if (chord := check.positive("chord", chord, "m")) > radius and not check.faults:
-            check.refuse("chord", f"must be at most the radius, {radius:g} m, got {chord:g} m")
+            most, got = told_apart(radius, chord)
+            check.refuse("chord", f"must be at most the radius, {most} m, got {got} m")
         if depth is not None:
             depth = check.positive("depth", depth, "m")
         length = check.positive("length", length, "m")

@@ -111,8 +111,12 @@ prepared.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
 
 
 def read_prepared(file: Path, **keys: Any) -> ReadProfile:
-    """Read a profile from a file and prepare it, as keys of `read_profile` and of `Preparation` ask for it."""
-    steps = {key: keys.pop(key) for step in STEPS for key in step.keys if key in keys}
+    """Read a profile from a file and prepare it, as keys of `read_profile` and of `Preparation` ask for it.
+
+    What both take is done in reading, before anything is checked.
+    """
+    reading = inspect.signature(read_profile).parameters
+    steps = {key: keys.pop(key) for step in STEPS for key in step.keys if key in keys and key not in reading}
     found, understood = read_profile(file, **keys)
     return ReadProfile(prepared(found, **steps), understood)
 

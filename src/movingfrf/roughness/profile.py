@@ -13,6 +13,7 @@ from movingfrf._basics.checks import checking
 from movingfrf._basics.door import mistaken
 from movingfrf._basics.spline import Piecewise, cubic
 from movingfrf._basics.values import Value, brief
+from movingfrf._basics.wording import told_apart
 
 # Relative slack in the comparison of lengths that were computed in different ways: more than their rounding, and
 # less than a step, of which a profile that fits into the memory has a thousand million at the most [1e-12 to 1e-9].
@@ -75,9 +76,9 @@ class Profile(Value):
                 falls = np.flatnonzero(np.diff(distance) <= 0)
                 if falls.size:
                     n = int(falls[0])
+                    one, next_one = told_apart(distance[n], distance[n + 1])
                     check.refuse(
-                        "distance",
-                        f"must increase, got {distance[n]:g} m followed by {distance[n + 1]:g} m at index {n + 1}",
+                        "distance", f"must increase, got {one} m followed by {next_one} m at index {n + 1}"
                     )
             across = None if self.across is None else check.array("across", self.across, "m", (None,))
             count = elevation.shape[1] if elevation.ndim == 2 else 1
@@ -118,24 +119,53 @@ class Profile(Value):
         elevation = np.asarray(self.elevation, float)
         return elevation[:, None] if elevation.ndim == 1 else elevation
 
-    def even_step(self, within: float = 1e-6) -> float | None:
-        """Distance between stations if it is the same throughout.
-
-        Parameters
-        ----------
-        within : float
-            How far a station may lie from an even grid, as a share of the step.
+    def even_step(self) -> float | None:
+        """Distance between stations if it is the same throughout, but for the rounding of whatever wrote them.
 
         Returns
         -------
         float or None
             Step [m]; None if the stations are uneven.
         """
+        step, off = self._even_grid()
+        # How far a station may lie from an even grid, as a share of the step: the rounding of a file's stations,
+        # 0.01 for whole millimetres at steps of 50, 0.02 for single precision 30 km along at steps of 0.1 m; 0.1
+        # moves a roughness index by up to 0.3 % [0.01 to 0.1]. Stations are no more even than numbers of their size
+        # can say.
+        uneven = 0.02
+        return step if off <= uneven * step + 8 * np.spacing(np.abs(self.stations[[0, -1]]).max()) else None
+
+    def _even_grid(self) -> tuple[float, float]:
+        """Step of the even grid from the first station to the last, and how far one lies from it at most [m]."""
         stations = self.stations
         step = float((stations[-1] - stations[0]) / (stations.size - 1))
-        off = np.abs(stations - (stations[0] + step * np.arange(stations.size))).max()
-        # Stations are no more even than numbers of their size can say.
-        return step if off <= within * step + 8 * np.spacing(np.abs(stations[[0, -1]]).max()) else None
+        return step, float(np.abs(stations - (stations[0] + step * np.arange(stations.size))).max())
+
+    def on_grid(self, what: str) -> tuple[float, tuple[str, ...]]:
+        """Step of a profile whose stations a file does not hold, and its steps, which say what that changes.
+
+        Parameters
+        ----------
+        what : str
+            What needs an even step, for the message.
+
+        Returns
+        -------
+        float
+            Step [m].
+        tuple of str
+            What was done to the profile: `steps`, and that stations were moved if they were.
+
+        Raises
+        ------
+        ValueError
+            If the stations are uneven.
+        """
+        self.require_even(what)
+        step, off = self._even_grid()
+        if off <= 1e-6 * step:  # a micrometre in steps of a metre is moved by nobody
+            return step, self.steps
+        return step, (*self.steps, f"put stations at an even step, which moved them by up to {off:.2g} m")
 
     def require_even(self, what: str) -> float:
         """Distance between stations, which must be the same throughout.
@@ -158,9 +188,10 @@ class Profile(Value):
         step = self.even_step()
         if step is None:
             steps = np.diff(self.stations)
+            shortest, longest = told_apart(steps.min(), steps.max(), digits=4)
             raise ValueError(
-                f"{what} needs stations at an even step, but they are {steps.min():.4g} to {steps.max():.4g} m "
-                "apart; resample the profile first, in Python by `resampled`, else by `movingfrf convert --step`"
+                f"{what} needs stations at an even step, but they are {shortest} to {longest} m apart; "
+                "resample the profile first, in Python by `resampled`, else by `movingfrf convert --step`"
             )
         return step
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory
 from movingfrf._basics.checks import Checks, checking, shown
+from movingfrf._basics.wording import told_apart
 from movingfrf.roughness.profile import SLACK, Profile
 from movingfrf.roughness.spectra.coherence import Coherence, presumed
 from movingfrf.roughness.spectra.spectrum import Spectrum, require_spectrum
@@ -211,9 +212,9 @@ def realise_laplace(
             check.refuse("kurtosis", f"must be above 3, the kurtosis of a Gaussian road, got {kurtosis!r}")
         segment = check.positive("segment", segment, "m")
         if not check.faults and segment < (half := 0.5 / spectrum.band[1]) * (1 - SLACK):
+            least, got = told_apart(half, segment)
             check.refuse(
-                "segment",
-                f"must be at least half of the shortest wave of the spectrum, {half:g} m, got {segment:g} m",
+                "segment", f"must be at least half of the shortest wave of the spectrum, {least} m, got {got} m"
             )
 
     def draw(rng: np.random.Generator, paths: int, harmonics: Harmonics) -> ComplexArray:
@@ -275,10 +276,11 @@ def _asked(
     if not check.faults and not first < last:
         check.refuse("covering", f"must be a first and a last distance [m], got {shown(covering)}")
     if not check.faults and step * spectrum.band[1] > 0.5 * (1 + SLACK):
+        most, got = told_apart(0.5 / spectrum.band[1], step)
         check.refuse(
             "step",
-            f"must be at most {0.5 / spectrum.band[1]:g} m, half of the shortest wave of the spectrum "
-            f"({spectrum.band[1]:g} cycle/m), got {step:g} m",
+            f"must be at most {most} m, half of the shortest wave of the spectrum ({spectrum.band[1]:g} cycle/m), "
+            f"got {got} m",
         )
     where = (float(first), float(last))
     if across is None:

@@ -14,6 +14,7 @@ from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.smooth import smooth_step
 from movingfrf._basics.spline import cubic
 from movingfrf._basics.values import Value
+from movingfrf._basics.wording import told_apart
 from movingfrf.response.line import Abrupt, Given, Line
 
 # A smooth force at some times [s], or its derivative of an order up to 2 [N, N/s, N/s²].
@@ -271,7 +272,8 @@ def random_sum(
             check.refuse("count", f"must be at most {most_waves}, got {shown(count)}")
         seed = check.whole("seed", seed)
         if not check.faults and lowest >= highest:
-            check.refuse("highest", f"must be above lowest, {lowest:g} Hz, got {highest:g} Hz")
+            least, got = told_apart(lowest, highest)
+            check.refuse("highest", f"must be above lowest, {least} Hz, got {got} Hz")
     random = np.random.default_rng(seed)
     return harmonics(
         amplitudes=np.full(count, rms * np.sqrt(2 / count)).tolist(),

@@ -51,7 +51,9 @@ def profile(*, way: Way, **given: Any) -> Road:
 PROFILE = Kind(
     name="profile",
     make=profile,
-    keys=(*keys_of(read_profile), *keys_of(prepared, without=["profile"])),
+    keys=tuple(
+        {key.name: key for key in (*keys_of(read_profile), *keys_of(prepared, without=["profile"]))}.values()
+    ),
     words="A measured profile, read from a file.",
 )
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
-from movingfrf._basics.wording import in_both_units
+from movingfrf._basics.wording import in_both_units, told_apart
 from movingfrf.vehicles.vehicle import Vehicle
 
 
@@ -64,9 +64,8 @@ class Journey:
             if self.solved_step is not None:
                 check.positive("solved_step", self.solved_step, "s")
             if not check.faults and self.samples < 2:
-                check.refuse(
-                    "duration", f"must be at least two time steps of {self.time_step:g} s, got {self.duration:g} s"
-                )
+                step, got = told_apart(self.time_step, self.duration)
+                check.refuse("duration", f"must be at least two time steps of {step} s, got {got} s")
 
     @property
     def speed_in_words(self) -> str:

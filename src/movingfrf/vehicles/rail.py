@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.wording import told_apart
 from movingfrf.vehicles.assembly import Body, Suspension, assemble
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.vehicle import Vehicle
@@ -250,7 +251,8 @@ def carriage(
         apart = check.positive("bogie_spacing", bogie_spacing, "m")
         wheels = check.positive("axle_spacing", axle_spacing, "m")
         if not check.faults and wheels >= apart:
-            check.refuse("axle_spacing", f"must be less than the bogie spacing {apart:g} m, got {wheels:g} m")
+            most, got = told_apart(apart, wheels)
+            check.refuse("axle_spacing", f"must be less than the bogie spacing {most} m, got {got} m")
     centres = {"bogie_1": 0.5 * apart, "bogie_2": -0.5 * apart}
     bogies = [name for name in centres for _ in range(2)]
     places = [centre + half for centre in centres.values() for half in (0.5 * wheels, -0.5 * wheels)]

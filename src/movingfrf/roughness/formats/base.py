@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import option
+from movingfrf._basics.checks import nearest, option
 from movingfrf._basics.output import Content
 from movingfrf.roughness.profile import Profile
 
@@ -59,6 +59,24 @@ class RawProfile(NamedTuple):
     steps: tuple[str, ...] = ()  # what was done to it before, and in reading
     place: Callable[[int], str] = _numbered  # where in the file a station stands
     same_across: bool = False  # one elevation for all paths
+    timed: str = ""  # name of the stations where they are times [s], which a speed turns into distances
+
+
+class Wanted(NamedTuple):
+    """What is asked for of all that a file holds."""
+
+    columns: Sequence[ColumnKey] | None = None  # the station, then elevations; None: by names and units
+    recording: str | None = None  # by name; None: the only one
+    units: Sequence[str] | None = None  # of the stations, then of the elevations, in place of those in the file
+    skip_lines: int = 0  # lines at the beginning that are no part of the table
+
+
+class Recording(NamedTuple):
+    """One of the recordings that a file holds: a track, a struct, a group, a sheet."""
+
+    name: str
+    points: int
+    length: float  # [m], nan where it is not known before it is read
 
 
 class Format(NamedTuple):
@@ -68,10 +86,12 @@ class Format(NamedTuple):
     title: str  # what it is called in a sentence
     endings: tuple[str, ...]
     recognises: Callable[[bytes], bool]  # from the first bytes of a file
-    read: Callable[[Path, Sequence[ColumnKey] | None], RawProfile]
+    read: Callable[[Path, Wanted], RawProfile]
     # Profile and encoding → files, each by what its name has behind that of the profile's.
     made: Callable[[Profile, str], dict[str, Content]] | None = None
     encodings: tuple[str, ...] = ("",)  # how it can be written; the first is the default
+    several: bool = False  # whether a file may hold several recordings; what holds one refuses `recording`
+    takes: tuple[str, ...] = ()  # what else of `Wanted` it understands
 
 
 def metres(unit: str, what: str) -> float:
@@ -149,6 +169,86 @@ def chosen_columns(names: Sequence[str], columns: Sequence[ColumnKey]) -> list[i
     if len(set(found)) < len(found):
         raise ValueError(f"the columns {list(columns)!r} name one column twice")
     return found
+
+
+def chosen_recording(recordings: Sequence[Recording], asked: str | None) -> int:
+    """Find the recording that was asked for, or the only one.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        What the file holds; at least one.
+    asked : str, optional
+        Name of one of them.
+
+    Returns
+    -------
+    int
+        Its number, counted from 0.
+
+    Raises
+    ------
+    ValueError
+        If there are several and none is asked for, or there is none of that name; with names and lengths.
+    """
+    names = [each.name for each in recordings]
+    if asked in names:
+        return names.index(asked)
+    if asked is None and len(recordings) == 1:
+        return 0
+    most = 12  # that are listed
+    there = "; ".join(
+        f"{name[:60]!r}, {points} points" + (f" over {length:.6g} m" if length == length else "")
+        for name, points, length in recordings[:most]
+    ) + (f"; and {len(names) - most} more" if len(names) > most else "")
+    if asked is None:
+        raise ValueError(
+            f"holds {len(names)} recordings, which are not joined: {there}; {option('recording')} chooses one"
+        )
+    raise ValueError(f"there is no recording {asked[:60]!r}{nearest(asked, names)}; there are {there}")
+
+
+def told_apart_by_number(names: Sequence[str]) -> list[str]:
+    """Names of which no two are alike: from the second on, equal ones get a number."""
+    found: dict[str, None] = {}
+    number: dict[str, int] = {}
+    for name in names:
+        again = name
+        while again in found:
+            number[name] = number.get(name, 1) + 1
+            again = f"{name} ({number[name]})"
+        found[again] = None
+    return list(found)
+
+
+def units_taken(own: Sequence[str | None], asked: Sequence[str] | None) -> list[str | None]:
+    """Units of a station and of elevations: those that were asked for, or else a file's own.
+
+    Parameters
+    ----------
+    own : sequence of str or None
+        Units in the file, of the station first; None or empty where it has none.
+    asked : sequence of str, optional
+        Two units, of the station and of all elevations, or one for each.
+
+    Returns
+    -------
+    list of str or None
+        One for each.
+
+    Raises
+    ------
+    ValueError
+        If there are neither two nor one for each.
+    """
+    if asked is None:
+        return [unit or None for unit in own]
+    if len(asked) not in (2, len(own)):
+        raise ValueError(
+            f"{option('units')} must be those of the station and of the elevations, or of each of {len(own) - 1} "
+            f"paths, got {len(asked)}"
+        )
+    return [*asked] if len(asked) == len(own) else [asked[0], *[asked[1]] * (len(own) - 1)]
 
 
 def listed(names: Sequence[str], most: int = 12) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import re
 from collections.abc import Iterator, Sequence
 from itertools import chain
 from pathlib import Path
@@ -12,87 +10,89 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import option
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats.base import (
     ColumnKey,
     Format,
     RawProfile,
+    Wanted,
     bytes_of,
     chosen_columns,
     listed,
     metres,
     scaled,
-    unit_in,
+    units_taken,
 )
+from movingfrf.roughness.formats.fields import Line, Table, as_text, find_table, line_of, numbers
+from movingfrf.roughness.formats.heads import Columns, columns_of
+from movingfrf.roughness.formats.roles import Role, counts, kind_of_unit, scales_of, sort_out
 from movingfrf.roughness.profile import Profile
 
-# What may stand between two numbers, tried in this order; None is any white space.
-SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", None: "spaces"}
 
-# Signs that begin a comment.
-COMMENTS = "#%"
+class Taken(NamedTuple):
+    """Columns that make a profile."""
 
-NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
-
-
-class ColumnLayout(NamedTuple):
-    """How the numbers stand in a file."""
-
-    separator: str | None
-    decimal: str
-    comment: str
-    names: list[str]
-    units: list[str | None]
-    first: int  # number of the first line of numbers
-    header: int  # number of lines of names and units
+    used: list[int]  # the station, then elevations
+    timed: bool  # whether the station is a time
+    left: dict[int, str]  # other columns, and why they are none
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
-    """Read text in columns; the first is the station unless `columns` says otherwise."""
-    return table(bytes_of(path), columns)
+def read(path: Path, wanted: Wanted) -> RawProfile:
+    """Read text in columns."""
+    return table(bytes_of(path), wanted)
 
 
-def table(data: bytes, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def table(data: bytes, wanted: Wanted) -> RawProfile:
     """Make a raw profile of text in columns.
 
     Parameters
     ----------
     data : bytes
         The text.
-    columns : sequence of str or int, optional
-        Columns to take, by name or by number counted from 0: the station, then elevations. All by default.
+    wanted : Wanted
+        Columns to take, by name or by number counted from 0: the station, then elevations; found by their names and
+        units otherwise, or else by their order.
 
     Returns
     -------
     RawProfile
-        In metres.
+        In metres; in seconds where there are times only.
 
     Raises
     ------
     ValueError
         If it is no such text, with the line that is wrong.
     """
-    data, encoding = _as_text(data)
-    layout = _layout(data, encoding)
-    used = list(range(len(layout.names))) if columns is None else chosen_columns(layout.names, columns)
-    if len(used) < 2:
-        raise ValueError("expected a station and at least one elevation in each line")
+    data, encoding = as_text(data)
+    data = _below(data, wanted.skip_lines)
+    rows, head = _laid_out(data, encoding)
+    found = numbers(data, encoding, rows)
+    there = [bool(np.isfinite(column).any()) for column in found.values.T]
+    if wanted.columns is not None:
+        taken = _asked_for(head, wanted.columns, found.texts)
+    else:
+        taken = _taken(head, found.values, found.texts, there)
+    if wanted.units is not None:
+        taken = taken._replace(timed=kind_of_unit(wanted.units[0]) == "time")
+    stated = units_taken([head.units[n] for n in taken.used], wanted.units)
     try:
-        scales = [
-            1.0 if layout.units[n] is None else metres(str(layout.units[n]), f"column {layout.names[n]!r}")
-            for n in used
-        ]
+        scales = scales_of(stated, [f"column {head.names[n]!r}" for n in taken.used], taken.timed)
     except ValueError as error:
-        raise ValueError(f"line {max(layout.first - 1, 1)}: {error}") from None
-    values = numbers(data, encoding, layout)
+        raise ValueError(f"line {max(rows.first - 1, 1)}: {error}") from None
 
     def place(row: int) -> str:
-        return f"line {_line_of(data, encoding, layout, row)}"
+        return f"line {line_of(data, encoding, rows, row)}"
 
-    _require_whole_rows(data, encoding, layout, values)
-    stations = scaled(values[:, used[0]], scales[0])
-    elevations = np.stack([scaled(values[:, n], s) for n, s in zip(used[1:], scales[1:], strict=True)], axis=1)
-    return RawProfile(stations, elevations, _words(layout, used), place=place, same_across=len(used) == 2)
+    values = [scaled(found.values[:, n], scale) for n, scale in zip(taken.used, scales, strict=True)]
+    return RawProfile(
+        values[0],
+        np.stack(values[1:], axis=1),
+        _words(rows, head, taken, stated, wanted.skip_lines),
+        place=place,
+        same_across=len(taken.used) == 2,
+        timed=head.names[taken.used[0]] if taken.timed else "",
+    )
 
 
 def read_numbers(file: str | Path) -> FloatArray:
@@ -111,61 +111,20 @@ def read_numbers(file: str | Path) -> FloatArray:
     Raises
     ------
     ValueError
-        If it is no such file, or a field is empty; with the line.
+        If it is no such file, or a field is empty or text; with the line.
     """
     try:
-        data, encoding = _as_text(bytes_of(Path(file)))
-        layout = _layout(data, encoding)
-        values = numbers(data, encoding, layout)
+        data, encoding = as_text(bytes_of(Path(file)))
+        rows, head = _laid_out(data, encoding)
+        values, texts = numbers(data, encoding, rows)
+        if texts:
+            raise ValueError(f"column {head.names[min(texts)]!r} holds no numbers")
         bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
         if bad.size:
-            raise ValueError(f"line {_line_of(data, encoding, layout, int(bad[0]))}: expected finite numbers only")
+            raise ValueError(f"line {line_of(data, encoding, rows, int(bad[0]))}: expected finite numbers only")
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from None
     return values
-
-
-def numbers(data: bytes, encoding: str, layout: ColumnLayout) -> FloatArray:
-    """Read all numbers of a text whose layout is known.
-
-    Parameters
-    ----------
-    data : bytes
-        The text.
-    encoding : str
-        Its encoding.
-    layout : ColumnLayout
-        Separators, names, where the numbers begin.
-
-    Returns
-    -------
-    ndarray, shape (row, column)
-        Numbers; nan where a field is empty.
-
-    Raises
-    ------
-    ValueError
-        With the first line that is wrong.
-    """
-    import pandas as pd
-
-    try:
-        frame = pd.read_csv(
-            io.BytesIO(memoryview(data)[_offset(data, layout.first) :]),
-            sep=layout.separator or r"\s+",
-            decimal=layout.decimal,
-            comment=layout.comment,
-            header=None,
-            names=range(len(layout.names)),
-            index_col=False,
-            dtype=np.float64,
-            encoding=encoding,
-            # Before 3.1 pandas reads decimals to the last digit but one unless it is told; later it warns of that.
-            float_precision="round_trip" if [int(n) for n in pd.__version__.split(".")[:2]] < [3, 1] else None,
-        )
-    except (ValueError, OverflowError) as error:
-        raise ValueError(_first_fault(data, encoding, layout) or f"cannot be read as numbers: {error}") from None
-    return frame.to_numpy()
 
 
 def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
@@ -201,196 +160,119 @@ def rows(arrays: Sequence[FloatArray], separator: str) -> Iterator[bytes]:
         yield "".join(separator.join(map(repr, row)) + "\n" for row in block.tolist()).encode()
 
 
-def _as_text(data: bytes) -> tuple[bytes, str]:
-    """Tell the encoding; text in two-byte characters is turned into UTF-8."""
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        try:
-            return data.decode("utf-16").encode("utf-8"), "utf-8"
-        except UnicodeError:
-            raise ValueError("is not a text file") from None
-    if b"\0" in data:
-        raise ValueError("is not a text file")
-    data = data.removeprefix(b"\xef\xbb\xbf")
-    try:
-        # Numbers are ASCII; only names and comments can hold anything else.
-        data.decode("utf-8")
-    except UnicodeDecodeError:
-        return data, "latin-1"
-    return data, "utf-8"
+def _below(data: bytes, skipped: int) -> bytes:
+    """Empty the first lines, so that those below keep their numbers."""
+    if not skipped:
+        return data
+    kept = data.split(b"\n", skipped)
+    if len(kept) <= skipped:
+        raise ValueError(f"has {len(kept)} lines, and {option('skip_lines')} leaves out {skipped}")
+    return b"\n" * skipped + kept[-1]
 
 
-def _lines(data: bytes, encoding: str, comment: str = COMMENTS) -> Iterator[tuple[int, str]]:
-    """Lines that hold something, with their numbers."""
-    text = io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline=None)
-    for number, line in enumerate(text, start=1):
-        line = line.strip("\n")
-        if line.strip() and line.lstrip()[0] not in comment:
-            yield number, line
+def _laid_out(data: bytes, encoding: str) -> tuple[Table, Columns]:
+    """Find rows and names; there may be more names than the first row has fields."""
+    rows = find_table(data, encoding)
+    head = columns_of(rows)
+    if len(head.names) > rows.width:
+        rows = rows._replace(width=len(head.names), closed=False)
+    return rows, head
 
 
-def _layout(data: bytes, encoding: str) -> ColumnLayout:
-    most = 4  # lines of names, units and first numbers that tell how a file is laid out [a convention]
-    looked_at: list[tuple[int, str]] = []
-    for number, line in _lines(data, encoding):
-        if separators := _separators(line):
-            return _laid_out(data, encoding, looked_at, number, line, separators[0])
-        looked_at.append((number, line))
-        if len(looked_at) == most:
-            break
-    if not looked_at:
-        raise ValueError("is empty: a profile needs at least four lines of station and elevation")
-    for number, line in looked_at:
-        if any(NUMBER.fullmatch(word) for word in re.split(r"[;,\s]+", line)):
-            raise ValueError(
-                f"line {number}: expected a station and at least one elevation, all numbers, got {line[:60]!r}"
-            )
-    raise ValueError(
-        f"no numbers in the first {len(looked_at)} lines: expected a station and at least one elevation in each"
-    )
+def _asked_for(head: Columns, columns: Sequence[ColumnKey], texts: frozenset[int]) -> Taken:
+    used = chosen_columns(head.names, columns)
+    if len(used) < 2:
+        raise ValueError(f"{option('columns')} must name a station and at least one elevation")
+    for n in used:
+        if n in texts:
+            raise ValueError(f"the column {head.names[n]!r} holds no numbers")
+    return Taken(used, head.heads[used[0]].role == "time", {})
 
 
-def _separators(line: str) -> list[str | None]:
-    """Separators that make a line two numbers or more; the first is the one that is meant."""
-    split = {separator: _fields(line, separator) for separator in SEPARATORS}
-    return [
-        separator
-        for separator, fields in split.items()
-        if len(fields) > 1 and NUMBER.fullmatch(fields[0]) and all(map(_is_number, fields))
-    ]
-
-
-def _fields(line: str, separator: str | None) -> list[str]:
-    fields = [field.strip() for field in line.split(separator)]
-    fields = [f[1:-1].strip() if len(f) > 1 and f[0] == f[-1] == '"' else f for f in fields]
-    return fields[:-1] if len(fields) > 1 and not fields[-1] and separator is not None else fields
-
-
-def _is_number(field: str) -> bool:
-    missing = ("", "nan", "na", "n/a", "null")  # where nothing was measured
-    return bool(NUMBER.fullmatch(field)) or field.lower() in missing
-
-
-def _laid_out(
-    data: bytes, encoding: str, above: list[tuple[int, str]], first: int, line: str, separator: str | None
-) -> ColumnLayout:
-    """Say how the numbers stand that begin in a line, given the lines of names and units above it."""
-    if separator == "," and "." not in line and re.search(r",\s", line) and re.search(r"\d,\d", line):
+def _taken(head: Columns, values: FloatArray, texts: frozenset[int], there: Sequence[bool]) -> Taken:
+    """Tell station and elevations by names and units, or else by their order."""
+    heads = head.heads
+    left = {n: "no numbers" if n in texts else "empty" for n in range(len(heads)) if n in texts or not there[n]}
+    able = [n for n in range(len(heads)) if n not in left]
+    told = sort_out([heads[n] for n in able])
+    elevations = [able[n] for n in told.elevations]
+    station = None if told.station is None else able[told.station]
+    if any(heads[n].role == "station" for n in left) and station is None:
+        n = min(n for n in left if heads[n].role == "station")
+        raise ValueError(f"the column {head.names[n]!r} holds no numbers that could be stations")
+    timed = station is None and told.time is not None
+    if timed:
+        assert told.time is not None
+        station = able[told.time]
+    if station is None:
+        unknown = [n for n in able if heads[n].role == "unknown"]
+        if _counter_first(values[:, unknown]):
+            left[unknown.pop(0)] = _why("counter")
+        station = unknown[0] if unknown else None
+    elevations = [n for n in elevations if n != station and n not in left]
+    if station is None or not elevations:
+        what = "a distance along the road" if station is None else "an elevation"
         raise ValueError(
-            f"line {first}: commas with and without a space behind them, so that a decimal comma cannot be told "
-            f"from a separator, got {line[:60]!r}"
+            f"none of the columns {listed(head.names)} is {what}{_excuses(head, left, able)}; {option('columns')} "
+            "names station and elevations"
         )
-    # Behind an empty last field of the first line there may be a path whose first value is missing.
-    count = len(_fields(line, separator))
-    rows = [(number, text, _names(text, separator)) for number, text in above]
-    names = [str(n) for n in range(count)] if not rows else rows[0][2]
-    units: list[str | None] = [unit_in(name) for name in names] if rows else [None] * count
-    if len(rows) == 2 and all(_bare_unit(field) for field in rows[1][2]):
-        units = [_bare_unit(field) for field in rows[1][2]]
-    for n, (number, text, fields) in enumerate(rows):
-        if any(NUMBER.fullmatch(field) for field in fields) or n > 1 or (n == 1 and not all(units)):
-            raise ValueError(
-                f"line {number}: expected numbers separated by {SEPARATORS[separator]}, got {text[:60]!r}"
-            )
-        if len(fields) != len(names) or len(names) < count:
-            raise ValueError(
-                f"line {number}: {len(fields)} names for {count} columns separated by {SEPARATORS[separator]}, got "
-                f"{text[:60]!r}"
-            )
-    comment = next((mark for mark in COMMENTS if data.lstrip().startswith(mark.encode())), COMMENTS[0])
-    return ColumnLayout(
-        separator, _decimal(data, encoding, first, separator), comment, names, units, first, len(rows)
-    )
+    left |= {n: _why(heads[n].role) for n in able if n not in (station, *elevations) and n not in left}
+    return Taken([station, *elevations], timed, left)
 
 
-def _names(line: str, separator: str | None) -> list[str]:
-    """Names of a header line; between spaces a bracket belongs to the name before it."""
-    if separator is not None:
-        return _fields(line, separator)
-    return re.findall(r"[^\s\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?|\[[^\]]*\]", line)
+def _excuses(head: Columns, left: dict[int, str], able: Sequence[int]) -> str:
+    """Say of columns that are not what is looked for what they are."""
+    said = {**left, **{n: _why(head.heads[n].role) for n in able if head.heads[n].role in ("counter", "other")}}
+    return f" ({', '.join(f'{head.names[n]!r} is {why}' for n, why in sorted(said.items()))})" if said else ""
 
 
-def _bare_unit(field: str) -> str | None:
-    """Read a unit in a line of units, with or without brackets; None if it is none."""
-    unit = unit_in(field) or field
-    try:
-        metres(unit, "")
-    except ValueError:
-        return None
-    return unit
+def _why(role: Role) -> str:
+    """Say what a column is that is not taken."""
+    said: dict[Role, str] = {
+        "other": "no elevation",
+        "time": "a time",
+        "counter": "a counter",
+        "station": "another station",
+        "across": "a lateral position",
+    }
+    return said.get(role, "not called an elevation")
 
 
-def _decimal(data: bytes, encoding: str, first: int, separator: str | None) -> str:
-    """Tell the decimal sign from the first line that has one."""
-    if separator == ",":
-        return "."
-    for number, line in _lines(data, encoding):
-        if number >= first and ("." in line or "," in line):
-            return "." if "." in line else ","
-    return "."
+def _counter_first(columns: FloatArray) -> bool:
+    """Whether the first of some columns without names counts, and the second is a station: it alone increases."""
+    if columns.shape[1] < 3 or not counts(columns[:, 0]):
+        return False
+    return bool((np.diff(columns[:, 1]) > 0).all() and not (np.diff(columns[:, 2]) > 0).all())
 
 
-def _first_fault(data: bytes, encoding: str, layout: ColumnLayout) -> str | None:
-    """Say which line is the first that cannot be read."""
-    said = SEPARATORS[layout.separator]
-    for number, line in _rows(data, encoding, layout):
-        fields = _fields(line.split(layout.comment)[0], layout.separator)
-        wrong = "," if layout.decimal == "." else "."
-        if not all(map(_is_number, fields)) or any(wrong in field for field in fields):
-            return f"line {number}: expected numbers separated by {said}, got {line[:60]!r}"
-        if len(fields) > len(layout.names):
-            return f"line {number}: expected {len(layout.names)} columns as before, got {len(fields)}"
-    return None
-
-
-def _offset(data: bytes, line: int) -> int:
-    """Place of the first byte of a line."""
-    ends = (end.end() for end in re.finditer(rb"\r\n|\n|\r", data))
-    return next((end for n, end in enumerate(ends, start=2) if n == line), 0)
-
-
-def _rows(data: bytes, encoding: str, layout: ColumnLayout) -> Iterator[tuple[int, str]]:
-    """Lines of numbers, as they are counted in `numbers`."""
-    for number, line in _lines(data, encoding, layout.comment):
-        if number >= layout.first:
-            yield number, line
-
-
-def _line_of(data: bytes, encoding: str, layout: ColumnLayout, row: int) -> int:
-    return next((number for n, (number, _) in enumerate(_rows(data, encoding, layout)) if n == row), -1)
-
-
-def _require_whole_rows(data: bytes, encoding: str, layout: ColumnLayout, values: FloatArray) -> None:
-    """Tell fields that are empty from fields that are not there, which counts as damage."""
-    incomplete = np.flatnonzero(np.isnan(values[:, -1]))
-    if not incomplete.size:
-        return
-    left = set(incomplete.tolist())
-    for row, (number, line) in enumerate(_rows(data, encoding, layout)):
-        if row in left:
-            left.remove(row)
-            # A separator at the end of a line closes it, or opens an empty field.
-            count = len(line.split(layout.comment)[0].split(layout.separator))
-            if count < len(layout.names):
-                raise ValueError(f"line {number}: expected {len(layout.names)} columns as before, got {count}")
-            if not left:
-                return
-
-
-def _words(layout: ColumnLayout, used: Sequence[int]) -> str:
-    words = [f"separated by {SEPARATORS[layout.separator]}"]
-    words += ["decimal commas"] * (layout.decimal == ",")
-    words.append({0: "no header", 1: "one header line"}.get(layout.header, f"{layout.header} header lines"))
-    if layout.header:
-        words.append(f"columns {listed([layout.names[n] for n in used])}")
-    units = {n: layout.units[n] for n in used}
-    if all(unit is None for unit in units.values()):
+def _words(rows: Table, head: Columns, taken: Taken, stated: Sequence[str | None], skip_lines: int) -> str:
+    """Say how the columns were understood."""
+    words = [f"separated by {rows.said}"]
+    words += ["decimal commas"] * (rows.decimal == ",")
+    words.append({0: "no header", 1: "one header line"}.get(head.lines, f"{head.lines} header lines"))
+    above = skip_lines + len(head.skipped)
+    words += [f"{above} {'line' if above == 1 else 'lines'} above left out"] * (above > 0)
+    if rows.below:
+        words.append(f"{_cited(rows.below)} below left out")
+    names = head.names
+    if head.lines or taken.left:
+        words.append(f"columns {listed([names[n] for n in taken.used])}")
+    if taken.left:
+        words.append("without " + ", ".join(f"{names[n]!r} ({why})" for n, why in sorted(taken.left.items())))
+    units = dict(zip(taken.used, stated, strict=True))
+    if all(unit is None for unit in stated):
         words.append("no units, taken as metres")
-    elif any(unit is None or metres(unit, "") != 1.0 for unit in units.values()):
-        said = [f"{layout.names[n]!r} {f'from {u}' if u else 'taken as metres'}" for n, u in units.items()]
+    elif any(unit is None or metres(unit, "") != 1.0 for unit in stated[taken.timed :]):
+        said = [f"{names[n]!r} {f'from {u}' if u else 'taken as metres'}" for n, u in units.items()]
         words.append(f"in metres after conversion ({', '.join(said)})")
     else:
         words.append("in metres")
     return ", ".join(words)
+
+
+def _cited(lines: Sequence[Line]) -> str:
+    first = lines[0].text.strip()[:40]
+    return f"{first!r}" if len(lines) == 1 else f"{len(lines)} lines, {first!r} …"
 
 
 # Text in columns has no signature: it is what a file is taken for that has none.
@@ -401,4 +283,5 @@ FORMAT = Format(
     lambda head: False,
     read,
     made,
+    takes=("units", "skip_lines"),
 )

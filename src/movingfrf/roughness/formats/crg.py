@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from movingfrf._basics.checks import option
 from movingfrf._basics.output import Content
 from movingfrf._basics.undoing import scratch
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
+from movingfrf.roughness.formats.base import Format, RawProfile, Wanted
 from movingfrf.roughness.profile import Profile
 
 
@@ -31,13 +30,14 @@ ENCODINGS = {
 }
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read a grid of elevations; its long sections become paths, from left to right."""
-    if columns is not None:
+    if wanted.columns is not None:
         raise ValueError(
             f"is a grid: choose its paths by {option('across')}, their lateral positions, not by columns"
         )
     crg = _library()
+    grid = _referred(path)
     try:
         # Its own verdicts come as Python warnings and a report; the errors among them are looked at below, as is
         # what is not finite.
@@ -52,13 +52,14 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
         raise ValueError(f"is damaged: {'; '.join(map(str, road.read_errors))}")
     if not all(np.isfinite(line).all() for line in (stations, across, road.x, road.y, road.zr)):
         raise ValueError("is damaged: its reference line or the positions of its long sections are not finite")
-    return RawProfile(stations, elevations, _words(road, _encoding(path)), across=across)
+    words = _words(road, f" of {grid.name!r}, which it refers to" if grid else "", _encoding(grid or path))
+    return RawProfile(stations, elevations, words, across=across, source=grid.name if grid else "")
 
 
 def made(profile: Profile, encoding: str) -> dict[str, Content]:
     """Make a grid along a straight reference line; a road that is the same across becomes a strip 2 m wide."""
     crg = _library()
-    step = profile.require_even("an OpenCRG file")
+    step, done = profile.on_grid("an OpenCRG file")
     across = np.array(profile.across if profile.across is not None else ())
     if profile.same_across:
         # A grid has two long sections at least.
@@ -70,7 +71,7 @@ def made(profile: Profile, encoding: str) -> dict[str, Content]:
     else:
         elevation = profile.columns
     order = np.argsort(across)
-    notes = [f"source: {profile.source}"] * bool(profile.source) + list(profile.steps)
+    notes = [f"source: {profile.source}"] * bool(profile.source) + list(done)
     road = crg.CrgRoad(
         z=elevation[:, order],
         u_inc=step,
@@ -91,17 +92,55 @@ def _library() -> Any:
     return pyopencrg
 
 
-def _encoding(path: Path) -> str:
+def _header(path: Path) -> str:
     with path.open("rb") as file:
-        # The header of a grid with very many long sections ends there at the latest.
-        found = re.search(rb"^#:\s*(\w{4})", file.read(2**20), re.MULTILINE)
-    code = found.group(1).decode("latin-1").upper() if found else ""
+        # That of a grid with very many long sections ends there at the latest.
+        return file.read(2**20).decode("latin-1")
+
+
+def _encoding(path: Path) -> str:
+    found = re.search(r"^#:\s*(\w{4})", _header(path), re.MULTILINE)
+    code = found.group(1).upper() if found else ""
     return next((encoding.digits for encoding in ENCODINGS.values() if encoding.code == code), "")
 
 
-def _words(road: Any, encoding: str) -> str:
+def _referred(path: Path) -> Path | None:
+    """File that holds the grid where this one refers to it: one beside it or below, which refers to no other."""
+    named = _reference(path)
+    if named is None:
+        return None
+    target = path.parent / named
+    if not named or not target.is_file():
+        raise ValueError(f"refers to {named!r}, which is not there")
+    if (
+        "$" in named
+        or PureWindowsPath(named).drive
+        or not target.resolve().is_relative_to(path.parent.resolve())
+        or target.resolve() == path.resolve()
+    ):
+        raise ValueError(f"refers to {named!r}, which is not followed: read that file itself")
+    if (further := _reference(target)) is not None:
+        raise ValueError(f"refers to {named!r}, which refers to {further!r} in turn: read that file itself")
+    return target
+
+
+def _reference(path: Path) -> str | None:
+    """Name of the file that the header of another refers to, its lines put together; None without a reference."""
+    lines = iter(re.split(r"^\${4,}", _header(path), maxsplit=1, flags=re.MULTILINE)[0].splitlines())
+    if not any(re.match(r"\$ROAD_CRG_FILE\b", line, re.IGNORECASE) for line in lines):
+        return None
+    own = []
+    for line in lines:
+        if line.startswith("$") and not line.startswith("$$"):
+            break
+        # A comment, the rest of a line behind an exclamation mark, and a dollar that does not begin a block.
+        own.append("" if line.startswith("*") else line.removeprefix("$").partition("!")[0].strip())
+    return "".join(own)[:200]
+
+
+def _words(road: Any, of: str, encoding: str) -> str:
     words = [
-        f"OpenCRG grid ({encoding}), {road.nv} long sections from {road.v_max:g} m (left) to {road.v_min:g} m "
+        f"OpenCRG grid{of} ({encoding}), {road.nv} long sections from {road.v_max:g} m (left) to {road.v_min:g} m "
         "(right)"
     ]
     if not road.is_straight:

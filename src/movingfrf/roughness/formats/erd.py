@@ -14,15 +14,17 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats.base import (
-    ColumnKey,
     Format,
     RawProfile,
+    Wanted,
     bytes_of,
     chosen_columns,
     listed,
-    metres,
     scaled,
+    units_taken,
 )
+from movingfrf.roughness.formats.fields import Table, numbers
+from movingfrf.roughness.formats.roles import scales_of
 from movingfrf.roughness.profile import Profile
 
 
@@ -47,7 +49,7 @@ STORED: dict[int, np.dtype[np.generic] | None] = {
 ENCODINGS = {"text": 5, "float": 1, "double": 2}
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read an ERD file; binary numbers lie beside it, in a file of its name that ends in .bin."""
     data = bytes_of(path)
     header, body, below = _split(data)
@@ -58,10 +60,9 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
             raise ValueError(f"scales its numbers by {keyword}, which is not understood")
     names = _fields(header, "SHORTNAM", count)
     units = _fields(header, "UNITSNAM", count)
-    used = list(range(count)) if columns is None else chosen_columns(names, columns)
-    scales = [metres(units[n] or "m", f"channel {names[n]!r}") for n in used]
-    along = words.get("XUNITS", "").strip()
-    scale = metres(along or "m", "XUNITS")
+    used = list(range(count)) if wanted.columns is None else chosen_columns(names, wanted.columns)
+    along, *taken = units_taken([words.get("XUNITS", "").strip(), *(units[n] for n in used)], wanted.units)
+    scale, *scales = scales_of([along, *taken], ["XUNITS", *(f"channel {names[n]!r}" for n in used)], False)
     start = _number(words.get("XSTART", "0"), "XSTART")
     values = _text(body, count, below) if STORED[key] is None else _binary(path, count, STORED[key])
     if samples >= 0 and len(values) != samples:
@@ -71,7 +72,7 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
     if not step > 0:
         raise ValueError(f"must have a positive step between samples, got {step!r}")
     elevations = np.stack([scaled(values[:, n], s) for n, s in zip(used, scales, strict=True)], axis=1)
-    said = sorted({units[n] or "metres, since no unit is given" for n in used})
+    said = sorted({unit or "metres, since no unit is given" for unit in taken})
     understood = (
         f"ERD with {'text' if STORED[key] is None else f'binary numbers ({STORED[key]})'}, channels "
         f"{listed([names[n] for n in used])} in {', '.join(said)}, stations every {step:g} {along or 'm'}"
@@ -88,7 +89,7 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
 
 def made(profile: Profile, encoding: str) -> dict[str, Content]:
     """Make an ERD file: numbers as text in full, or binary beside it."""
-    step = profile.require_even("an ERD file")
+    step, done = profile.on_grid("an ERD file")
     elevation = profile.columns
     key = ENCODINGS[encoding]
     names = [f"Path{p}" for p in range(elevation.shape[1])]
@@ -104,7 +105,7 @@ def made(profile: Profile, encoding: str) -> dict[str, Content]:
         "XLABEL  Distance",
         "XUNITS  m",
         f"XSTART  {float(profile.stations[0])!r}",
-        *(f"HISTORY {' '.join(sentence.split())}" for sentence in profile.steps),
+        *(f"HISTORY {' '.join(sentence.split())}" for sentence in done),
         "END",
     ]
     head = "".join(f"{line.rstrip()}\n" for line in lines).encode("latin-1", "replace")
@@ -183,9 +184,9 @@ def _text(body: bytes, count: int, below: int) -> FloatArray:
         raise ValueError(f"line {below}: {width} numbers in a line do not fit {count} channels")
     skipped = len(body) - len(body.lstrip())
     below += body[:skipped].count(b"\n")
-    layout = text.ColumnLayout(separator, ".", "\x01", [str(n) for n in range(width)], [None] * width, 1, 0)
+    layout = Table(separator, ".", "#", width, False, frozenset(), 1, [], [])
     try:
-        values = text.numbers(body[skipped:], "latin-1", layout)
+        values = numbers(body[skipped:], "latin-1", layout).values
     except ValueError as error:
         raise ValueError(f"behind the header, which ends above line {below}: {error}") from None
     if values.size % count:
@@ -212,4 +213,4 @@ def _recognises(head: bytes) -> bool:
     return head.startswith(HEADER.signature.encode())
 
 
-FORMAT = Format("erd", "ERD", (".erd",), _recognises, read, made, tuple(ENCODINGS))
+FORMAT = Format("erd", "ERD", (".erd",), _recognises, read, made, tuple(ENCODINGS), takes=("units",))

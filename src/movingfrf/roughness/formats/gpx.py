@@ -1,9 +1,11 @@
-"""GPX tracks: latitude, longitude and height of points, turned into distance along the track and elevation."""
+"""GPX tracks and routes: latitude, longitude and height of points, turned into distance along and elevation."""
 
 from __future__ import annotations
 
 from array import array
+from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
 
@@ -11,71 +13,143 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import count
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
+from movingfrf.roughness.formats.base import (
+    Format,
+    RawProfile,
+    Recording,
+    Wanted,
+    bytes_of,
+    chosen_recording,
+    told_apart_by_number,
+)
 
 
-class GpxTrack:
-    """Collects the points of a track while the file goes by."""
+def _numbers() -> array[float]:
+    return array("d")
+
+
+@dataclass(slots=True)
+class Line:
+    """Points one after the other: a segment of a track, or a route."""
+
+    kind: str  # track or route
+    number: int  # of the track or the route
+    segment: int  # of the track; 0 of a route
+    name: str = ""  # of the track or the route
+    latitude: array[float] = field(default_factory=_numbers)
+    longitude: array[float] = field(default_factory=_numbers)
+    height: array[float] = field(default_factory=_numbers)
+
+    def stations(self) -> FloatArray:
+        """Distance of each point from the first [m]."""
+        steps = distances(np.array(self.latitude), np.array(self.longitude))
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+class Lines:
+    """Collects segments and routes while the file goes by."""
 
     def __init__(self) -> None:
-        self.latitude, self.longitude, self.height = array("d"), array("d"), array("d")
-        self.name = ""
+        self.found: list[Line] = []
+        self._open: list[str] = []  # elements that are open
+        self._own: list[Line] = []  # of the track or the route that is open
+        self._line: Line | None = None
+        self._name = ""  # of the track or the route
+        self._segment = 0  # of the track
+        self._counts = {"track": 0, "route": 0}
         self._place: tuple[float, float] | None = None
         self._height = float("nan")
         self._text = ""
 
     def begin(self, tag: str, attributes: dict[str, str]) -> None:
-        """Note where a point begins."""
+        """Note where a track, a segment, a route or a point begins."""
         self._text = ""
-        if _bare(tag) in ("trkpt", "rtept"):
-            self._place = (_degrees(attributes, "lat", 90.0), _degrees(attributes, "lon", 180.0))
-            self._height = float("nan")
+        tag = _bare(tag)
+        self._open.append(tag)
+        match tag:
+            case "trk" | "rte":
+                self._line, self._own, self._name, self._segment = None, [], "", 0
+                self._counts["track" if tag == "trk" else "route"] += 1
+            case "trkseg":
+                self._line = None
+                self._segment += 1
+            case "trkpt" | "rtept":
+                self._place = (_degrees(attributes, "lat", 90.0), _degrees(attributes, "lon", 180.0))
+                self._height = float("nan")
 
     def text(self, words: str) -> None:
         """Gather the text of an element."""
         self._text += words
 
     def end(self, tag: str) -> None:
-        """Note the height of a point, and a point that is complete."""
+        """Note the name of a track, the height of a point, and a point that is complete."""
         tag = _bare(tag)
+        self._open.pop()
         if tag == "ele" and self._place is not None:
             try:
                 self._height = float(self._text)
             except ValueError:
                 raise ValueError(f"has the height {self._text.strip()[:30]!r}, which is no number") from None
         elif tag in ("trkpt", "rtept") and self._place is not None:
-            self.latitude.append(self._place[0])
-            self.longitude.append(self._place[1])
-            self.height.append(self._height)
+            if self._line is None:
+                kind = "track" if tag == "trkpt" else "route"
+                self._line = Line(kind, self._counts[kind], self._segment, self._name)
+                self.found.append(self._line)
+                self._own.append(self._line)
+            self._line.latitude.append(self._place[0])
+            self._line.longitude.append(self._place[1])
+            self._line.height.append(self._height)
             self._place = None
-        elif tag == "name" and not self.height and not self.name:
-            self.name = self._text.strip()[:100]
+        elif tag == "name" and self._open[-1:] in (["trk"], ["rte"]):
+            self._name = self._text.strip()[:100]
+            for line in self._own:  # where the name stands behind the points
+                line.name = self._name
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
-    """Read a track; points that do not lead on are left out, and it says so."""
-    if columns is not None:
+def read(path: Path, wanted: Wanted) -> RawProfile:
+    """Read one segment or route; points that do not lead on are left out, and it says so."""
+    if wanted.columns is not None:
         raise ValueError("is a track: it has no columns to choose from")
-    track = _parsed(bytes_of(path))
-    if not track.height:
+    lines = _parsed(bytes_of(path)).found
+    if not lines:
         raise ValueError("has no points: expected trkpt or rtept with lat, lon and ele")
-    height = np.array(track.height)
-    steps = distances(np.array(track.latitude), np.array(track.longitude))
-    onward = np.concatenate([[True], steps > 0])
-    stations = np.concatenate([[0.0], np.cumsum(steps)])[onward]
+    names = _names(lines)
+    least = 4  # points that make a profile: what has fewer is no recording that anyone would choose
+    long = [n for n, line in enumerate(lines) if len(line.height) >= least] or list(range(len(lines)))
+    recordings = [
+        Recording(names[n], len(lines[n].height), float(lines[n].stations()[-1]))
+        for n in (long if wanted.recording is None else range(len(lines)))
+    ]
+    chosen = chosen_recording(recordings, wanted.recording)
+    number = long[chosen] if wanted.recording is None else chosen
+    line, name = lines[number], names[number]
+    height, along = np.array(line.height), line.stations()
+    onward = np.concatenate([[True], np.diff(along) > 0])
     standing = int(np.sum(~onward))
     said = f"{count(standing, 'point')} that {'does' if standing == 1 else 'do'} not lead on left out"
     numbers = np.flatnonzero(onward)
+    short = len(lines) - len(long)
     return RawProfile(
-        stations,
+        along[onward],
         height[onward][:, None],
-        f"GPX track {track.name!r} of {count(height.size, 'point')}, horizontal distance on the ellipsoid of WGS 84"
-        + (f", {said}" if standing else ""),
-        source=track.name,
+        f"GPX {line.kind} {name!r} of {count(height.size, 'point')}, horizontal distance on the ellipsoid of WGS 84"
+        + (f", {said}" if standing else "")
+        + (f", {count(short, 'line')} of less than {least} points beside it" if short else ""),
+        source=name if line.name else "",
         steps=(said,) if standing else (),
         place=lambda row: f"point {numbers[row] + 1}",
         same_across=True,
     )
+
+
+def _names(lines: Sequence[Line]) -> list[str]:
+    """Names of segments and routes: those of the tracks, with the number of the segment where there are several."""
+    segments = Counter((line.kind, line.number) for line in lines)
+    names = []
+    for line in lines:
+        name = line.name or f"{line.kind} {line.number}"
+        names.append(name if segments[line.kind, line.number] == 1 else f"{name}, segment {line.segment}")
+    return told_apart_by_number(names)
 
 
 def distances(latitude: FloatArray, longitude: FloatArray) -> FloatArray:
@@ -106,8 +180,8 @@ def distances(latitude: FloatArray, longitude: FloatArray) -> FloatArray:
     return np.hypot(northward, eastward)
 
 
-def _parsed(data: bytes) -> GpxTrack:
-    track = GpxTrack()
+def _parsed(data: bytes) -> Lines:
+    track = Lines()
     parser = expat.ParserCreate()
     parser.StartElementHandler = track.begin
     parser.EndElementHandler = track.end
@@ -145,4 +219,4 @@ def _recognises(head: bytes) -> bool:
     return b"<gpx" in head
 
 
-FORMAT = Format("gpx", "GPX", (".gpx",), _recognises, read)
+FORMAT = Format("gpx", "GPX", (".gpx",), _recognises, read, several=True)

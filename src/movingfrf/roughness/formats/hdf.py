@@ -26,9 +26,6 @@ from movingfrf.roughness.formats.arrays import Array
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
-# Where the superblock holds the addresses of the beginning and the end of the data, by its version.
-ADDRESSES = {0: (24, 40), 1: (28, 44), 2: (12, 28), 3: (12, 28)}
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
@@ -44,10 +41,11 @@ LIMITS = Limits()
 
 
 class HdfContents(NamedTuple):
-    """Arrays of real numbers at the top of a file, and its texts about the whole."""
+    """Arrays of real numbers, those in groups with their names before a slash, and texts about the whole."""
 
     arrays: dict[str, Array]
     attributes: dict[str, str]
+    unread: dict[str, str]  # what else there is, and what it is
 
 
 @contextmanager
@@ -91,7 +89,7 @@ def opened(path: Path) -> Iterator[HdfContents]:
             item["name"]: Array(tuple(item["shape"]), partial(_load, folder / f"{n}.npy"), item["unit"])
             for n, item in enumerate(content["arrays"])
         }
-        yield HdfContents(arrays, content["attributes"])
+        yield HdfContents(arrays, content["attributes"], content["unread"])
 
 
 def _load(file: Path) -> FloatArray:
@@ -104,7 +102,9 @@ def _require_bounds(path: Path) -> int:
     with path.open("rb") as file:
         head = file.read(1024)
     block = head[max(head.find(SIGNATURE), 0) :]
-    places = ADDRESSES.get(block[8]) if len(block) > 8 else None
+    # Where the superblock holds the addresses of the beginning and the end of the data, by its version.
+    addresses = {0: (24, 40), 1: (28, 44), 2: (12, 28), 3: (12, 28)}
+    places = addresses.get(block[8]) if len(block) > 8 else None
     base, end = [int.from_bytes(block[at : at + 8], "little") for at in places or (0, 0)]
     size = path.stat().st_size
     if places is None or base > size or not max(size - LIMITS.trailing, 1) <= end <= size:

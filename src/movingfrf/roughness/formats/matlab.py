@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,21 +9,24 @@ import numpy as np
 from movingfrf._basics import matlab_file
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import arrays, hdf
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
+from movingfrf.roughness.formats.base import Format, RawProfile, Wanted, bytes_of
 from movingfrf.roughness.profile import Profile
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
-    """Read the arrays of either version."""
+def read(path: Path, wanted: Wanted) -> RawProfile:
+    """Read the arrays of either version, those in structs too."""
     data = bytes_of(path)
     if hdf.SIGNATURE in (data[:8], data[512:520]):
         del data
         with hdf.opened(path) as content:
-            return arrays.raw_profile(content.arrays, columns, "MATLAB 7.3 file")
-    numbers = matlab_file.arrays_and_texts(data).numbers
-    return arrays.raw_profile(
-        {name: arrays.Array(stored.shape, stored.load) for name, stored in numbers.items()}, columns, "MATLAB file"
-    )
+            # Fields of structs are groups there.
+            inside = {name.replace("/", "."): array for name, array in content.arrays.items()}
+            return arrays.raw_profile(inside, wanted, "MATLAB 7.3 file", content.unread)
+    found = matlab_file.arrays_and_texts(data)
+    numbers = {
+        name: arrays.Array(stored.shape, stored.load) for name, stored in (found.numbers | found.fields).items()
+    }
+    return arrays.raw_profile(numbers, wanted, "MATLAB file", found.unread)
 
 
 def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
@@ -37,4 +39,4 @@ def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
     return {"": matlab_file.as_mat(values)}
 
 
-FORMAT = Format("mat", "MATLAB", (".mat",), matlab_file.recognised, read, made)
+FORMAT = Format("mat", "MATLAB", (".mat",), matlab_file.recognised, read, made, several=True, takes=("units",))

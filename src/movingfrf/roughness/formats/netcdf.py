@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from movingfrf._basics.netcdf_file import as_netcdf
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import arrays, hdf
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile
+from movingfrf.roughness.formats.base import Format, RawProfile, Wanted
 from movingfrf.roughness.profile import Profile
 
-# Between the sentences of an attribute: netCDF turns a list of one into text.
-BETWEEN = "\n"
 
-
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read distance and elevation, and where they come from."""
     with hdf.opened(path) as content:
-        found = arrays.raw_profile(content.arrays, columns, "netCDF")
+        found = arrays.raw_profile(content.arrays, wanted, "netCDF", content.unread)
     source, steps = content.attributes["source"], content.attributes["steps"]
-    return found._replace(source=source, steps=tuple(step for step in steps.split(BETWEEN) if step))
+    return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
 
 
 def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
@@ -35,8 +31,17 @@ def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
         words = {"units": "m", "long_name": "lateral position, left positive"}
         variables["across"] = xr.Variable(("path",), list(profile.across), words)
     distance = xr.Variable(("distance",), profile.stations, {"units": "m", "long_name": "distance along the road"})
-    attributes = {"source": profile.source, "steps": BETWEEN.join(profile.steps)}
+    attributes = {"source": profile.source, "steps": "\n".join(profile.steps)}
     return {"": as_netcdf(xr.Dataset(variables, {"distance": distance}, attributes))}
 
 
-FORMAT = Format("netcdf", "netCDF", (".nc", ".nc4", ".h5"), lambda head: head.startswith(hdf.SIGNATURE), read, made)
+FORMAT = Format(
+    "netcdf",
+    "netCDF",
+    (".nc", ".nc4", ".h5"),
+    lambda head: head.startswith(hdf.SIGNATURE),
+    read,
+    made,
+    several=True,
+    takes=("units",),
+)

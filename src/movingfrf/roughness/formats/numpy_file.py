@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,11 +12,11 @@ from movingfrf._basics import numpy_file
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import arrays
-from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, bytes_of
+from movingfrf.roughness.formats.base import Format, RawProfile, Wanted, bytes_of
 from movingfrf.roughness.profile import Profile
 
 
-def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
+def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read distance and elevation, or the arrays that are named, and where they come from."""
     stored = numpy_file.stored_arrays(bytes_of(path))
     numbers = {
@@ -25,7 +24,8 @@ def read(path: Path, columns: Sequence[ColumnKey] | None) -> RawProfile:
         for name, each in stored.items()
         if each.kind in tuple("fiu")
     }
-    found = arrays.raw_profile(numbers, columns, "NumPy file")
+    unread = {name: "no plain array of real numbers" for name, each in stored.items() if each.kind in ("", "c")}
+    found = arrays.raw_profile(numbers, wanted, "NumPy file", unread)
     source, steps = (_text(stored.get(name)) for name in ("source", "steps"))
     return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
 
@@ -61,4 +61,6 @@ FORMAT = Format(
     lambda head: head.startswith(b"PK\x03\x04") and b".npy" in head[:300],
     read,
     made,
+    several=True,
+    takes=("units",),
 )

@@ -10,6 +10,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
+from movingfrf._basics.wording import told_apart
 from movingfrf.roughness.profile import SLACK, Profile
 
 
@@ -57,7 +58,8 @@ def longer(length: float, own: float, step: float, paths: int) -> tuple[float, i
     """Tell the length [m] of a longer road, checked, and how many stations it has."""
     with checking() as check:
         if (length := check.positive("length", length, "m")) < own * (1 - SLACK):
-            check.refuse("length", f"must be at least that of the profile, {own:g} m, got {length:g} m")
+            least, got = told_apart(own, length)
+            check.refuse("length", f"must be at least that of the profile, {least} m, got {got} m")
     require_room(length, step, paths)
     return length, int(np.ceil(length / step - SLACK * length / step)) + 1
 
@@ -96,10 +98,10 @@ def without_waves(profile: Profile, which: Literal["longer", "shorter"], wavelen
     length = profile.stations[-1] - profile.stations[0]
     with checking() as check:
         if not 4 * step * (1 - SLACK) <= wavelength <= length * (1 + SLACK):
+            least, most, got = told_apart(4 * step, length, wavelength)
             check.refuse(
                 "wavelength",
-                f"must lie between four steps and the length of the profile, {4 * step:g} and {length:g} m, got "
-                f"{wavelength:g} m",
+                f"must lie between four steps and the length of the profile, {least} and {most} m, got {got} m",
             )
     kind: Literal["highpass", "lowpass"] = "highpass" if which == "longer" else "lowpass"
     kept = filtered(profile.columns, step, wavelength=wavelength, kind=kind, order=FILTER.gentle)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
+from movingfrf._basics.wording import told_apart
 from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import Step, changed
 
@@ -39,16 +41,60 @@ def cropped(profile: Profile, first: float | None = None, last: float | None = N
     require_profile(profile)
     stations = profile.stations
     with checking() as check:
-        low = stations[0] if first is None else check.finite("first", first, "m")
-        high = stations[-1] if last is None else check.finite("last", last, "m")
-        kept = (stations >= low) & (stations <= high)
-        if not check.faults and kept.sum() < 4:
+        first = first if first is None else check.finite("first", first, "m")
+        last = last if last is None else check.finite("last", last, "m")
+    kept = slice(*within(stations, first, last))
+    done = cropping(stations, first, last)
+    return changed(profile, done, distance=stations[kept], elevation=np.asarray(profile.elevation)[kept])
+
+
+def within(stations: FloatArray, first: float | None, last: float | None) -> tuple[int, int]:
+    """Find where stations begin and end that lie between two distances [m].
+
+    Stations may be out of order, or missing: everything from the first one that lies there to the last one counts.
+
+    Parameters
+    ----------
+    stations : ndarray, shape (distance,)
+        Stations [m].
+    first, last : float, optional
+        The distances [m]; the ends by default.
+
+    Returns
+    -------
+    tuple of int
+        Number of the first station, and of the one behind the last.
+
+    Raises
+    ------
+    ValueError
+        If fewer than four stations are left.
+    """
+    low, high = -np.inf if first is None else first, np.inf if last is None else last
+    there = np.flatnonzero((stations >= low) & (stations <= high))
+    begin = int(there[0]) if there.size and first is not None else 0
+    end = int(there[-1]) + 1 if there.size and last is not None else len(stations)
+    count = end - begin if there.size else 0
+    with checking() as check:
+        if count < 4:
+            one, other = told_apart(*(ends_of(stations, first, last)))
             check.refuse(
                 "last" if first is None else "first",
-                f"must leave at least 4 stations, but between {low:g} m and {high:g} m there are {kept.sum()}",
+                f"must leave at least 4 stations, but between {one} m and {other} m there are {count}",
             )
-    done = f"cropped to {low:g} to {high:g} m"
-    return changed(profile, done, distance=stations[kept], elevation=np.asarray(profile.elevation)[kept])
+    return begin, end
+
+
+def ends_of(stations: FloatArray, first: float | None, last: float | None) -> tuple[float, float]:
+    """Distances between which stations are taken [m]: those that are given, or the ends."""
+    begins, ends = stations[[0, -1]].tolist() if stations.size else (np.nan, np.nan)
+    return begins if first is None else first, ends if last is None else last
+
+
+def cropping(stations: FloatArray, first: float | None, last: float | None) -> str:
+    """Say which stations were taken."""
+    low, high = told_apart(*ends_of(stations, first, last))
+    return f"cropped to {low} to {high} m"
 
 
 STEP = Step(cropped, {"first": "first", "last": "last"})

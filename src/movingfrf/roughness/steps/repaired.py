@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.checks import checking
+from movingfrf._basics.wording import told_apart
 from movingfrf.roughness.profile import SLACK, Profile, require_profile
 from movingfrf.roughness.steps.base import Step, changed, like
 
@@ -54,7 +55,8 @@ def repaired(profile: Profile, *, spike: float, window: float = 1.0, longest: fl
     size = 2 * round(window / step / 2) + 1
     with checking() as check:
         if size < 3:
-            check.refuse("window", f"must hold three stations, {3 * step:g} m, got {window:g} m")
+            least, got = told_apart(3 * step, window)
+            check.refuse("window", f"must hold three stations, {least} m, got {got} m")
     stations, elevation = profile.stations, profile.columns.copy()
     replaced, worst, place = 0, 0.0, 0.0
     for column in elevation.T:

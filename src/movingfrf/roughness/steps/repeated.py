@@ -6,6 +6,7 @@ import numpy as np
 
 from movingfrf._basics.checks import checking
 from movingfrf._basics.smooth import smooth_step
+from movingfrf._basics.wording import told_apart
 from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.base import Step, extended, longer
 
@@ -46,7 +47,8 @@ def repeated(profile: Profile, length: float, *, overlap: float = 0.0) -> Profil
     length, count = longer(length, own, step, profile.paths)
     with checking() as check:
         if (overlap := check.not_negative("overlap", overlap, "m")) > own / 2:
-            check.refuse("overlap", f"must be at most half of the profile, {own / 2:g} m, got {overlap:g} m")
+            most, got = told_apart(own / 2, overlap)
+            check.refuse("overlap", f"must be at most half of the profile, {most} m, got {got} m")
     elevation = profile.columns
     shared = round(overlap / step)
     period = elevation[: len(elevation) - shared].copy()

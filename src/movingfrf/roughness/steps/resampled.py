@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.checks import checking
+from movingfrf._basics.wording import told_apart
 from movingfrf.roughness.profile import SLACK, Profile, require_profile
 from movingfrf.roughness.steps.base import FILTER, Step, changed, filtered, like, require_room
 
@@ -46,7 +47,8 @@ def resampled(profile: Profile, step: float) -> Profile:
     count = int((length / step) * (1 + SLACK)) + 1
     with checking() as check:
         if count < 4:
-            check.refuse("step", f"must leave at least 4 stations on {length:g} m, got {step:g} m")
+            long, got = told_apart(length, step)
+            check.refuse("step", f"must leave at least 4 stations on {long} m, got {got} m")
     require_room(length, step, profile.paths)
     old = profile.even_step() or float(np.median(np.diff(stations)))
     done = f"resampled from {old:.4g} to {step:g} m"

@@ -38,16 +38,46 @@ def selected(profile: Profile, paths: Sequence[int]) -> Profile:
     [1.0]
     """
     require_profile(profile)
+    numbers = path_numbers(paths, profile.paths)
+    across = None if profile.across is None else tuple(profile.across[number] for number in numbers)
+    return changed(profile, selecting(numbers), elevation=profile.columns[:, numbers], across=across)
+
+
+def path_numbers(paths: Sequence[int], count: int) -> list[int]:
+    """Numbers of the paths to take, of so many.
+
+    Parameters
+    ----------
+    paths : sequence of int
+        Number of each path to take, counted from 0.
+    count : int
+        Number of paths that there are.
+
+    Returns
+    -------
+    list of int
+        The numbers, checked.
+
+    Raises
+    ------
+    ValueError
+        If there is no such path, or none is named.
+    """
+    numbers: list[int] = []
     with checking() as check:
         if np.ndim(paths) != 1 or not len(paths):
             check.refuse("paths", f"must be a list of at least one number of a path, got {shown(paths)}")
         else:
             numbers = [check.whole("paths", path) for path in paths]
             for number in numbers:
-                if number >= profile.paths:
-                    check.refuse("paths", f"must be below {profile.paths}, the number of paths, got {number}")
-    across = None if profile.across is None else tuple(profile.across[number] for number in numbers)
-    return changed(profile, f"took the paths {numbers}", elevation=profile.columns[:, numbers], across=across)
+                if number >= count:
+                    check.refuse("paths", f"must be below {count}, the number of paths, got {number}")
+    return numbers
+
+
+def selecting(numbers: Sequence[int]) -> str:
+    """Say which paths were taken."""
+    return f"took the paths {list(numbers)}"
 
 
 STEP = Step(selected, {"paths": "paths"})

@@ -1,0 +1,137 @@
+"""What stands above a table: the names of its columns and their units, and lines that are neither."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from movingfrf._basics.checks import option
+from movingfrf.roughness.formats.base import unit_in
+from movingfrf.roughness.formats.fields import SEPARATORS, WRITING, Line, Table, grouped, is_number, split
+from movingfrf.roughness.formats.roles import Head, head, kind_of_unit
+
+
+class Columns(NamedTuple):
+    """Names and units of the columns of a table."""
+
+    names: list[str]
+    heads: list[Head]  # what names and units say
+    lines: int  # lines of names and units
+    skipped: list[Line]  # lines above them that are none
+
+    @property
+    def units(self) -> list[str | None]:
+        """Units as they are written; None where there is none."""
+        return [each.unit for each in self.heads]
+
+
+class _Row(NamedTuple):
+    """A line above a table, in fields."""
+
+    line: Line
+    fields: list[str]
+    comment: bool
+
+
+def columns_of(table: Table) -> Columns:
+    """Find names and units above a table.
+
+    The line of names is the nearest to the rows that has one for each column; a line of units may stand between.
+    A comment counts if it names a station or has units. What is above that is left out, if it is plain that the
+    names are names.
+
+    Parameters
+    ----------
+    table : Table
+        Where the rows stand.
+
+    Returns
+    -------
+    Columns
+        One name for each column, numbers where there are no names.
+
+    Raises
+    ------
+    ValueError
+        If a line could be names or a damaged row, with its number.
+    """
+    rows = [_row(line, table) for line in table.above]
+    units = rows.pop().fields if rows and _are_units(rows, table.width) else None
+    while rows and rows[-1].comment and not _tells(rows[-1], table.width):
+        rows.pop()  # remarks
+    named = rows.pop() if rows and (rows[-1].comment or len(rows[-1].fields) > 1) else None
+    above = [row for row in rows if not row.comment]
+    plain = named is not None and _tells(named, table.width)
+    # A row that is damaged may look like a name, and two lines of names may be a title and names, or a damaged row.
+    if named and (any(map(is_number, named.fields)) or (not plain and any(len(row.fields) > 1 for row in above))):
+        raise ValueError(
+            f"line {named.line.number}: expected numbers separated by {table.said}, got {named.line.text[:60]!r}"
+            f"{grouped(named.fields)}; {option('skip_lines')} leaves out lines above the table"
+        )
+    if named and len(named.fields) < table.width:
+        raise ValueError(
+            f"line {named.line.number}: {len(named.fields)} names for {table.width} columns separated by "
+            f"{table.said}, got {named.line.text[:60]!r}"
+        )
+    return _columns(named.fields if named else [], units, table.width, [row.line for row in above])
+
+
+def _columns(names: list[str], units: list[str] | None, count: int, skipped: list[Line]) -> Columns:
+    lines = bool(names) + (units is not None)
+    if not names:
+        names = [str(n) for n in range(count)]
+        found = [Head("unknown", unit.strip("[]()") or None) for unit in units or [""] * count]
+        return Columns(names, found, lines, skipped)
+    units = [*(unit.strip("[]()") for unit in units or ()), *[""] * len(names)][: len(names)]
+    found = [head(name, unit) if name else Head("counter") for name, unit in zip(names, units, strict=True)]
+    return Columns([" ".join(name.split()) for name in names], found, lines, skipped)
+
+
+def _row(line: Line, table: Table) -> _Row:
+    text = line.text.strip()
+    comment = text[:1] in WRITING.signs if table.separator != ";" or text[:1] != ";" else False
+    if comment:
+        text = text.lstrip(WRITING.signs).strip()
+    return _Row(line, _names(text, table), comment)
+
+
+def _names(text: str, table: Table) -> list[str]:
+    """Names in a line, separated as the rows are; or else in another way that gives one for each column."""
+    own = _between_spaces(text) if table.separator is None else split(text, table.separator)
+    if table.closed and own and not own[-1]:
+        own.pop()
+    ways = [
+        re.split(r"\s{2,}|\t+", text.strip()),
+        [name.strip(" ;,\t") for name in re.findall(r"[^\[(]+[\[(][^\])]*[\])]", text)],
+        *(split(text, separator) for separator in SEPARATORS if separator),
+        _between_spaces(text),
+    ]
+    fitting = (names for names in ways if len(names) == table.width and _station_in(names))
+    return own if len(own) in (table.width, table.width + table.closed) else next(fitting, own)
+
+
+def _between_spaces(text: str) -> list[str]:
+    """Names with spaces between them; a bracket belongs to the name before it."""
+    if '"' in text:
+        return split(text, None)
+    return re.findall(r"[^\s\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?|\[[^\]]*\]", text)
+
+
+def _tells(row: _Row, count: int) -> bool:
+    """Whether it is plain that a line holds names: enough, no numbers, one of a station or a unit for each."""
+    enough = len(row.fields) == count if row.comment else len(row.fields) >= count
+    return enough and not any(map(is_number, row.fields)) and _station_in(row.fields)
+
+
+def _station_in(names: Sequence[str]) -> bool:
+    units = [unit_in(name) or "" for name in names]
+    return any(head(name).role == "station" for name in names) or all(
+        kind_of_unit(unit) != "unknown" for unit in units
+    )
+
+
+def _are_units(rows: Sequence[_Row], count: int) -> bool:
+    """Whether the last of some lines holds a unit for each column, in brackets or not, one of them a length."""
+    kinds = [kind_of_unit(field.strip("[]()")) for field in rows[-1].fields if field not in ("", "-")]
+    return len(rows[-1].fields) >= count and "length" in kinds and "unknown" not in kinds

@@ -1,0 +1,285 @@
+"""What a name and a unit say about numbers in a file: station, elevation, time, a counter, or something else."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from movingfrf._basics.arrays import FloatArray
+from movingfrf.roughness.formats.base import METRES, metres, unit_in
+
+Role = Literal["station", "elevation", "across", "time", "counter", "other", "unknown"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Vocabulary:
+    """What files are written with."""
+
+    # Seconds in one unit of time.
+    seconds: Mapping[str, float]
+    # Words of a name that tell its role, in English, German, French, Spanish and Italian: the first in this order
+    # that a name has. A compound counts by its end or its beginning, as its language has it.
+    words: Sequence[tuple[Role, re.Pattern[str]]]
+    # Words that tell one path from another.
+    sides: re.Pattern[str]
+    # Units of anything but length and time: quotients, powers, degrees, per cents, forces, voltages.
+    other_unit: re.Pattern[str]
+
+
+VOCABULARY = Vocabulary(
+    seconds={
+        **dict.fromkeys(("s", "sec", "secs", "second", "seconds", "sek"), 1.0),
+        **dict.fromkeys(("ms", "msec", "milliseconds"), 1e-3),
+        **dict.fromkeys(("us", "µs", "μs"), 1e-6),
+        **dict.fromkeys(("min", "minutes"), 60.0),
+        **dict.fromkeys(("h", "hr", "hour", "hours"), 3600.0),
+    },
+    words=(
+        (
+            "other",
+            re.compile(
+                r"lat|lati?tude|lon|lng|longi?tude|breitengrad|l(ä|ae)ngengrad|easting|northing|rechtswert|hochwert|"
+                r"speed|velocity|.*geschwindigkeit|vitesse|velocidad|temp|temperatur.*|iri|mpd|macrotexture|acc|"
+                r"accel.*|.*beschleunigung|azimuth|heading|bearing|pitch|roll|yaw|curvature|.*kr(ü|ue)mmung|slope|"
+                r"gradient|grade|.*neigung|pente|crossfall|superelevation|cant|(ü|ue)berh(ö|oe)hung|gauge|"
+                r"spurweite|twist|rut|ruts|rutting|spurrinne.*|quality|hdop|satellites?|weight|force|load|"
+                r"versines?|chords?|sehne.*|pfeilh(ö|oe)hen?"  # offsets from a chord
+            ),
+        ),
+        (
+            "elevation",
+            re.compile(
+                r"z|h|elev.*|height|heights|.*h(ö|oe)hen?|altitude|alt|ele|level|levels|vertical|uneven.*|"
+                r".*unebenheit.*|irregularit.*|alti|hauteur|cota|quota|altura|altezza"
+            ),
+        ),
+        ("across", re.compile(r"lateral|across|transverse|offset|quer.*")),
+        (
+            "station",
+            re.compile(
+                r"x|s|u|dist|distan.*|station|stations|stationing|stationierung|sta|chain.*|mileage|milepost|"
+                r"milepoint|kilomet.*|km|pk|position|pos|abscis.*|progressiv.*|.*weg|.*strecke|odometer|dmi|"
+                r"arclength"
+            ),
+        ),
+        (
+            "time",
+            re.compile(r"t|time|times|timestamp|datetime|date|utc|.*zeit|datum|temps|tiempo|tempo|seconds?|hours?"),
+        ),
+        ("elevation", re.compile(r".*profil.*")),  # a profile's distance is none
+        (
+            "counter",
+            re.compile(
+                r"i|n|no|nr|num|number|nummer|index|idx|id|row|line|record|samples?|count|counter|point|pt|punkt|"
+                r"unnamed"
+            ),
+        ),
+        (
+            "other",  # what tells stretches of road apart, and what is said of a station
+            re.compile(
+                r"lanes?|fahrstreifen|direction|richtung|section|abschnitt|route|run|year|jahr|flag|valid|status|event|"
+                r"code|remarks?|comments?|notes?|bemerkung.*|kommentar.*"
+            ),
+        ),
+    ),
+    sides=re.compile(
+        r"left|right|l|r|links|rechts|gauche|droite?|izquierd[ao]|derech[ao]|sinistr[ao]|destr[ao]|inner|outer|"
+        r"cent(er|re)|middle|mitte|[a-z]*wp|wheel|path|wheelpath|track|rail|lane|spur"
+    ),
+    other_unit=re.compile(
+        r".*[/%°²³^*].*|deg\.?|degrees?(_north|_east)?|rad|c|k|celsius|g|hz|v|mv|n|kn|kg|t|mph|kmh|kph|kmph|knots|"
+        r"bar|pa"
+    ),
+)
+
+
+class Head(NamedTuple):
+    """What the name of a column or an array, and its unit, say."""
+
+    role: Role
+    unit: str | None = None  # as it was written; None where none is stated
+
+
+class Sorted(NamedTuple):
+    """Which of several columns or arrays are what, by number."""
+
+    station: int | None  # None where no name and no unit says so
+    elevations: list[int]
+    time: int | None
+    left: list[int]  # everything else
+
+
+def head(name: str, unit: str = "") -> Head:
+    """Tell what a column or an array holds by its name and its unit; the unit counts first.
+
+    Parameters
+    ----------
+    name : str
+        The name, with a unit in brackets (`dist (m)`), behind a comma (`Elevation, mm`) or as its last word
+        (`station_ft`), or without.
+    unit : str, optional
+        The unit where it stands apart from the name: in a line of units, in an attribute.
+
+    Returns
+    -------
+    Head
+        Its role and the unit, wherever it stood. The unit may be one that nobody knows.
+
+    Examples
+    --------
+    >>> head("station_ft"), head("Elevation, mm"), head("Messzeit [ms]"), head("left")
+    (Head(role='station', unit='ft'), Head(role='elevation', unit='mm'), Head(role='time', unit='ms'), \
+Head(role='unknown', unit=None))
+    """
+    words = words_of(re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name))
+    stated = unit.strip().strip("[]()").strip() or (unit_in(name) or "").strip()
+    if not stated and len(words) > 1 and _ends_in_unit(words):
+        stated = words.pop()
+    if stated in ("-", "1"):  # what has no dimension
+        stated = ""
+    kind = kind_of_unit(stated)
+    role = _role(words)
+    if kind in ("time", "other") and role != "counter":
+        role = kind
+    elif role == "time" and kind == "length":
+        role = "unknown"
+    if not stated and words[-1:] == ["km"] and role == "station":
+        stated = "km"  # the unit is the name
+    return Head(role, stated or None)
+
+
+def kind_of_unit(unit: str) -> Literal["length", "time", "other", "unknown"]:
+    """Tell what is measured in a unit; unknown where it is none, or one that nobody knows."""
+    word = unit.strip().lower()
+    if word in METRES:
+        return "length"
+    if word in VOCABULARY.seconds:
+        return "time"
+    return "other" if VOCABULARY.other_unit.fullmatch(word) else "unknown"
+
+
+def scales_of(units: Sequence[str | None], names: Sequence[str], timed: bool) -> list[float]:
+    """Metres in one unit of a station and of elevations; of a station that is a time, seconds.
+
+    Parameters
+    ----------
+    units : sequence of str or None
+        Units, None for metres or seconds.
+    names : sequence of str
+        What is measured in them, for the message.
+    timed : bool
+        Whether the station is a time.
+
+    Returns
+    -------
+    list of float
+        One for each unit.
+
+    Raises
+    ------
+    ValueError
+        If one is not known.
+    """
+    along = VOCABULARY.seconds.get((units[0] or "s").strip().lower()) if timed else None
+    scales = [metres(unit or "m", name) for unit, name in list(zip(units, names, strict=True))[along is not None :]]
+    return scales if along is None else [along, *scales]
+
+
+def words_of(name: str) -> list[str]:
+    """Split a name into its words, in lower case: at blanks, signs, and capital letters within.
+
+    Examples
+    --------
+    >>> words_of("station_ft"), words_of("LElev."), words_of("Distance, m"), words_of("roadHeight2")
+    (['station', 'ft'], ['l', 'elev'], ['distance', 'm'], ['road', 'height'])
+    """
+    return [word.lower() for word in re.findall(r"[^\W\d_]+", _split(name))]
+
+
+def _split(name: str) -> str:
+    """Put a blank before every capital letter that begins a word."""
+    return re.sub(r"([a-zäöü])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3 \2\4", name)
+
+
+def rest_of(name: str) -> str:
+    """Tell what a name says besides its role and its unit: which recording it is.
+
+    Examples
+    --------
+    >>> rest_of("x1"), rest_of("Elevation_left [mm]"), rest_of("distance")
+    ('1', 'left', '')
+    """
+    found = re.findall(r"[^\W\d_]+|\d+", _split(re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name)).lower())
+    if len(found) > 1 and _ends_in_unit(found):
+        found.pop()
+    told = [pattern for role, pattern in VOCABULARY.words if role in ("station", "elevation")]
+    return " ".join(word for word in found if not any(pattern.fullmatch(word) for pattern in told))
+
+
+def names_a_path(name: str) -> bool:
+    """Tell whether a name does nothing but tell one path from another."""
+    words = words_of(name)
+    return bool(words) and all(map(VOCABULARY.sides.fullmatch, words))
+
+
+def sort_out(heads: Sequence[Head]) -> Sorted:
+    """Say which columns or arrays are what, as far as names and units tell.
+
+    The station is the first that is called so. Elevations are all that are called so and all that nothing but a
+    unit of length describes; where no name says elevation, everything that no name describes.
+
+    Parameters
+    ----------
+    heads : sequence of Head
+        What `head` says of each.
+
+    Returns
+    -------
+    Sorted
+        Numbers, counted from 0.
+
+    Examples
+    --------
+    >>> sort_out([head(name) for name in ("", "time [s]", "left [mm]", "distance [m]", "speed [km/h]")])
+    Sorted(station=3, elevations=[0, 2], time=1, left=[4])
+    """
+    roles = [each.role for each in heads]
+    station = roles.index("station") if "station" in roles else None
+    time = roles.index("time") if "time" in roles else None
+    called = "elevation" in roles
+    elevations = [
+        n
+        for n, (role, unit) in enumerate(heads)
+        if role == "elevation" or (role == "unknown" and (not called or kind_of_unit(unit or "") == "length"))
+    ]
+    left = [n for n in range(len(heads)) if n not in (station, time) and n not in elevations]
+    return Sorted(station, elevations, time, left)
+
+
+def counts(values: FloatArray) -> bool:
+    """Tell whether numbers do nothing but count: whole, one more each time, from 0 or 1 on.
+
+    Parameters
+    ----------
+    values : ndarray, shape (row,)
+        The numbers.
+
+    Returns
+    -------
+    bool
+        Whether they do.
+    """
+    return bool(values.size > 1 and values[0] in (0.0, 1.0) and (np.diff(values) == 1.0).all())
+
+
+def _role(words: Sequence[str]) -> Role:
+    return next((role for role, told in VOCABULARY.words if any(map(told.fullmatch, words))), "unknown")
+
+
+def _ends_in_unit(words: Sequence[str]) -> bool:
+    """Tell a unit that is the last word: one of length, or one of time behind a word for time."""
+    return words[-1] in METRES or (words[-1] in VOCABULARY.seconds and _role(words[:-1]) == "time")

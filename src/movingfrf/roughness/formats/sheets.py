@@ -1,0 +1,130 @@
+"""Spreadsheets: each sheet is read as text in columns is, a row as a line.
+
+A damaged file may make the library crash, or take memory without end, so it is taken apart in a process of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._basics.matlab_file import UNPACKING
+from movingfrf.roughness.formats import columns
+from movingfrf.roughness.formats.base import Format, RawProfile, Recording, Wanted, chosen_recording
+from movingfrf.roughness.formats.hdf import LIMITS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Book:
+    """How spreadsheets begin, and what one may take: conventions."""
+
+    zipped: bytes = b"PK\x03\x04"
+    parts: tuple[bytes, ...] = (b"[Content_Types]", b"_rels/", b"docProps/", b"xl/", b"customXml/", b"mimetype")
+    older: bytes = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+    memory: int = 2**31  # beside a hundred times the size of the file [byte]
+    times: int = 100
+
+
+BOOK = Book()
+
+
+class Sheet(NamedTuple):
+    """A sheet and what was read of it, or why nothing was."""
+
+    name: str
+    raw: RawProfile | None
+    fault: str = ""
+
+
+def read(path: Path, wanted: Wanted) -> RawProfile:
+    """Read the sheet that holds a table; where several do, the one that is asked for."""
+    found = [_sheet(name, text, wanted) for name, text in _texts(path)]
+    if not found:
+        raise ValueError("holds no sheets")
+    asked = [sheet for sheet in found if sheet.name == wanted.recording]
+    tables = asked or [sheet for sheet in found if sheet.raw] or found[:1]
+    recordings = [_recording(sheet) for sheet in tables]
+    sheet = tables[chosen_recording(recordings, wanted.recording)]
+    if sheet.raw is None:
+        raise ValueError(sheet.fault)
+    return sheet.raw
+
+
+def _sheet(name: str, text: bytes, wanted: Wanted) -> Sheet:
+    try:
+        raw = columns.table(text, wanted)
+    except ValueError as error:
+        return Sheet(name, None, f"sheet {name[:40]!r}, {_rows(str(error))}")
+    understood = raw.understood.replace("separated by tabs", f"sheet {name[:40]!r}")
+    return Sheet(name, raw._replace(understood=understood, place=lambda row: _rows(raw.place(row))))
+
+
+def _rows(said: str) -> str:
+    """Say of a sheet what was said of its text."""
+    return said.replace("line ", "row ", 1).replace(" separated by tabs", "").replace("\\t", " | ")
+
+
+def _recording(sheet: Sheet) -> Recording:
+    if sheet.raw is None:
+        return Recording(sheet.name, 0, float("nan"))
+    return Recording(sheet.name, sheet.raw.stations.size, float(np.ptp(sheet.raw.stations)))
+
+
+def _texts(path: Path) -> list[tuple[str, bytes]]:
+    """Name and text of each sheet."""
+    try:
+        import python_calamine  # noqa: F401
+    except ImportError:
+        raise ValueError("spreadsheets need python-calamine: pip install 'movingfrf[io]'") from None
+    size = path.stat().st_size
+    if zipfile.is_zipfile(path):
+        try:
+            with zipfile.ZipFile(path) as packed:
+                unpacked = sum(entry.file_size for entry in packed.infolist())
+        except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
+            raise ValueError(f"is damaged, or no spreadsheet: {error}") from None
+        if unpacked > UNPACKING.most(size):
+            raise ValueError(f"unpacks to more than {UNPACKING.times} times its size: unpack it elsewhere first")
+    with tempfile.TemporaryDirectory(prefix="movingfrf-") as name:
+        folder = Path(name)
+        child = Path(__file__).with_name("sheet_child.py")
+        most = BOOK.memory + BOOK.times * size
+        command = [sys.executable, "-P", str(child), str(path.resolve()), name, str(most)]
+        try:
+            done = subprocess.run(
+                command, capture_output=True, timeout=LIMITS.patience + size / LIMITS.pace, check=False
+            )
+        except subprocess.TimeoutExpired:
+            raise ValueError("is damaged: reading it comes to no end") from None
+        index = folder / "index.json"
+        if done.returncode or not index.exists():
+            said = done.stderr.decode("utf-8", "replace").strip().splitlines() if done.returncode == 3 else []
+            raise ValueError(f"is damaged, or no spreadsheet{f': {said[-1]}' if said else ''}")
+        names = json.loads(index.read_text(encoding="utf-8"))
+        return [(name, (folder / f"{n}.txt").read_bytes()) for n, name in enumerate(names)]
+
+
+def _recognises(head: bytes) -> bool:
+    if head.startswith(BOOK.older):
+        return True
+    length = int.from_bytes(head[26:28], "little")
+    return head.startswith(BOOK.zipped) and head[30 : 30 + length].startswith(BOOK.parts)
+
+
+FORMAT = Format(
+    "sheet",
+    "Excel and OpenDocument spreadsheets",
+    (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods"),
+    _recognises,
+    read,
+    several=True,
+    takes=("units", "skip_lines"),
+)

@@ -1,0 +1,107 @@
+"""Numbers that stand for a missing elevation: -9999, -999.25 and the like, which stand out far from all others."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._basics.arrays import FloatArray
+from movingfrf.roughness.formats.base import METRES
+
+
+class Sentinel(NamedTuple):
+    """A value that is hardly an elevation."""
+
+    value: float  # as it is in the profile [m]
+    number: int  # how often it is there, on all paths
+    off: float  # how far it is from the elevation nearest to it [m]
+    first: int  # number of the first station with it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Standing:
+    """How far a value must stand out; in brackets, between what each number is safe."""
+
+    # Times the largest step between stations of everything else: kerbs, potholes, humps and their neighbours differ
+    # by one step, and a marker by hundreds [3 to 100].
+    steps: float = 10.0
+    # What is this far from all other elevations [m] is none, whatever its digits [10 to 100].
+    height: float = 50.0
+    # Markers as they are written: nines alone, those of log files, the ends of whole numbers.
+    markers: re.Pattern[str] = re.compile(r"9{3,}(\.9+)?|999\.25|3276[78]|65535|214748364[78]")
+    most: int = 4  # different markers that are looked for on one path, low and high [a convention]
+
+
+STANDING = Standing()
+
+
+def sentinels(elevations: FloatArray) -> list[Sentinel]:
+    """Find the values that stand for a missing elevation.
+
+    A value counts that is among the lowest or the highest of a path, stands out from all others by many times their
+    largest step, and either is written like a marker in some unit of length or lies beyond any road.
+
+    Parameters
+    ----------
+    elevations : ndarray, shape (distance,) or (distance, path)
+        Elevations [m], nan where the file says that there is none.
+
+    Returns
+    -------
+    list of Sentinel
+        The most frequent first; empty where every value may be an elevation.
+
+    Examples
+    --------
+    >>> sentinels(np.array([0.0, 0.01, -9999.0, 0.02, 0.01, -9999.0, 0.0]))
+    [Sentinel(value=-9999.0, number=2, off=9999.0, first=2)]
+    """
+    found: dict[float, Sentinel] = {}
+    for column in elevations.reshape(len(elevations), -1).T:
+        for one in _of_path(column):
+            known = found.get(one.value, one._replace(number=0))
+            found[one.value] = Sentinel(
+                one.value, known.number + one.number, min(known.off, one.off), min(known.first, one.first)
+            )
+    return sorted(found.values(), key=lambda each: -each.number)
+
+
+def _of_path(column: FloatArray) -> list[Sentinel]:
+    there = column[np.isfinite(column)]
+    apart = np.abs(np.diff(there))
+    # Beside what stands out there is a large step; most roads are done with here.
+    if there.size < 3 or apart.max() <= STANDING.steps * np.median(apart):
+        return []
+    values, numbers = np.unique(there, return_counts=True)
+    if values.size < 3:
+        return []
+    gaps = np.diff(values)
+    # The lowest and the highest values, each with what lies between it and the next one towards the middle.
+    most = min(STANDING.most, values.size // 2)
+    low, high = gaps[:most], gaps[-most:]
+    ends = [
+        *zip(values[:most], numbers[:most], low, strict=True),
+        *zip(values[-most:], numbers[-most:], high, strict=True),
+    ]
+    candidates = {
+        float(value): int(number) for value, number, off in ends if off > STANDING.height or _is_marker(value)
+    }
+    rest = column[np.isfinite(column) & ~np.isin(column, list(candidates))]
+    if rest.size < 2:
+        return []
+    step = float(np.abs(np.diff(rest)).max())
+    offs = {value: float(np.abs(rest - value).min()) for value in candidates}
+    return [
+        Sentinel(value, number, offs[value], int(np.flatnonzero(column == value)[0]))
+        for value, number in candidates.items()
+        if offs[value] > STANDING.steps * step
+    ]
+
+
+def _is_marker(value: float) -> bool:
+    """Whether a value is written like a marker, in metres or in whatever unit the file has."""
+    written = (f"{abs(value) / metres:.6f}".rstrip("0").rstrip(".") for metres in {*METRES.values()})
+    return any(map(STANDING.markers.fullmatch, written))
