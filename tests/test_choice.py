@@ -141,9 +141,7 @@ DECIMAL = [1.0, 2.0, -9999.9, 4.0, 5.0, 6.0]
     ids=str,
 )
 def test_all_that_netcdf_calls_missing_is_a_gap(tmp_path, values, kind, said):
-    with pytest.raises(
-        ValueError, match=r"value 3: no elevation at 2 m; in all 1 elevations are missing in 1 gaps"
-    ):
+    with pytest.raises(ValueError, match=r"value 3: no elevation at 2 m; in all 1 elevation is missing in 1 gap"):
         mf.read_profile(packed(tmp_path, values, kind, **said))
 
 

@@ -16,7 +16,7 @@ import xarray as xr
 import movingfrf as mf
 from movingfrf._basics.netcdf_file import as_netcdf
 from movingfrf._basics.output import replacing, write_whole
-from movingfrf.commands.main import OUTPUT, main
+from movingfrf.commands.main import main
 from movingfrf.commands.streams import StandardStream
 from movingfrf.reports import profile as profile_page
 from movingfrf.reports import result as result_page
@@ -315,7 +315,7 @@ def test_equal_content_gives_equal_bytes_and_holds_it(tmp_path):
 
 @pytest.mark.usefixtures("short_pages")
 def test_results_are_there_where_standard_output_is_full(given, tmp_path, capsys, monkeypatch):
-    full = StandardStream(open("/dev/full", "w"), OUTPUT)
+    full = StandardStream(open("/dev/full", "w"), StandardStream.OUTPUT)
     monkeypatch.setattr(sys, "stdout", full)
     assert main(["run", str(given / "truck.toml"), "-o", str(tmp_path / "out")]) == 2
     monkeypatch.undo()

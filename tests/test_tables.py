@@ -223,7 +223,7 @@ def test_every_marker_of_what_is_missing(tmp_path, marker, separator):
     marker = marker or ('""' if separator == " " else "")
     text = lines("{x}|{z}|{y}").replace("|-2|", f"|{marker}|").replace("|", separator)
     file = written(tmp_path, "road.csv", text)
-    with pytest.raises(ValueError, match="line 3: no elevation at 1 m on path 0; in all 1 elevations"):
+    with pytest.raises(ValueError, match="line 3: no elevation at 1 m on path 0; in all 1 elevation is"):
         mf.read_profile(file)
     assert mf.read_profile(file, repair_gaps=1.0).profile.elevation[2].tolist() == [2.75, -4.0]
 

@@ -22,7 +22,12 @@ FAULTS = [
     Fault("array cut short silently", "roughness/formats/hdf_child.py", "        sys.exit(4)", "        pass"),
     # Standard output.
     Fault("letters that are refused", "commands/streams.py", '"replace", line', '"strict", line'),
-    Fault("nameless standard output", "commands/main.py", "error.filename == OUTPUT and placed", "False"),
+    Fault(
+        "nameless standard output",
+        "commands/main.py",
+        "error.filename == StandardStream.OUTPUT and placed",
+        "False",
+    ),
     Fault("status of Python's own end", "commands/main.py", "            stream.flush()", "            pass"),
     Fault(
         "scenario in the letters of the console",

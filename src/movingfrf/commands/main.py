@@ -15,9 +15,6 @@ from movingfrf._basics.ending import heed, ignore, placed, written
 from movingfrf.commands.root import Status, app
 from movingfrf.commands.streams import StandardStream
 
-# What standard output is called in a message.
-OUTPUT = "standard output"
-
 # Module → its commands, in the order in which messages list them. A module is loaded when one of its commands is
 # called for, or help is.
 COMMANDS = (
@@ -69,7 +66,7 @@ def main(arguments: list[str] | None = None) -> int:
         said = _failed(error)
     except SystemExit:
         # So does rich end a process where nobody reads what it prints.
-        said = _failed(OSError(errno.EPIPE, os.strerror(errno.EPIPE), OUTPUT))
+        said = _failed(OSError(errno.EPIPE, os.strerror(errno.EPIPE), StandardStream.OUTPUT))
     if not said:
         return Status.DONE
     with suppress(OSError):
@@ -80,7 +77,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _failed(error: OSError) -> str:
     """Say what cannot be read or written, and why."""
     place = f"{error.filename}: " if error.filename else ""
-    there = f"; {written()}" if error.filename == OUTPUT and placed else ""
+    there = f"; {written()}" if error.filename == StandardStream.OUTPUT and placed else ""
     return f"cannot read or write: {place}{error.strerror or error}{there}"
 
 
@@ -91,7 +88,7 @@ def entry() -> None:
     # as Python does, takes an eighth of a short run.
     gc.set_threshold(100_000)
     # One that was closed takes nothing.
-    sys.stdout = StandardStream(sys.stdout or open(os.devnull, "w"), OUTPUT)
+    sys.stdout = StandardStream(sys.stdout or open(os.devnull, "w"), StandardStream.OUTPUT)
     sys.stderr = StandardStream(sys.stderr or open(os.devnull, "w"), "standard error")
     status = main()
     ignore()

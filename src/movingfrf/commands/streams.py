@@ -20,6 +20,8 @@ class StandardStream(io.TextIOWrapper):
         What it is called in a message.
     """
 
+    OUTPUT = "standard output"  # its name in a message
+
     def __init__(self, stream: TextIO, name: str) -> None:
         super().__init__(stream.buffer, stream.encoding, "replace", line_buffering=bool(stream.line_buffering))
         self._called = Path(name)

@@ -35,11 +35,11 @@ class Batch:
 
 BATCH = Batch()
 
-P = ParamSpec("P")
-T = TypeVar("T")
+Taken = ParamSpec("Taken")
+Given = TypeVar("Given")
 
 
-def unthreaded(function: Callable[P, T]) -> Callable[P, T]:
+def unthreaded(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
     """Keep BLAS and LAPACK to one thread while a function runs.
 
     Many small matrices and thin products gain nothing by two, take twice the processor's time, and lose tenfold if
@@ -47,7 +47,7 @@ def unthreaded(function: Callable[P, T]) -> Callable[P, T]:
     """
 
     @wraps(function)
-    def on_one_thread(*args: P.args, **keywords: P.kwargs) -> T:
+    def on_one_thread(*args: Taken.args, **keywords: Taken.kwargs) -> Given:
         pools = _threads()
         with pools.limit(limits=1) if pools else nullcontext():
             return function(*args, **keywords)

@@ -391,7 +391,7 @@ def _cropped_sides(raw: RawProfile) -> RawProfile:
         across=None if raw.across is None else raw.across[left:right],
         steps=(
             *raw.steps,
-            f"left out {left} long sections at the left rim and {missing.shape[1] - right} at the right",
+            f"left out {count(left, 'long section')} at the left rim and {missing.shape[1] - right} at the right",
         ),
     )
 
@@ -401,10 +401,10 @@ def _cropped_ends(raw: RawProfile) -> RawProfile:
     kept = np.flatnonzero(~np.isnan(raw.elevations).any(axis=1))
     if not kept.size:
         raise ValueError("has no station with an elevation on every path")
-    first, last, count = int(kept[0]), int(kept[-1]) + 1, len(raw.elevations)
-    if (first, last) == (0, count):
+    first, last, whole = int(kept[0]), int(kept[-1]) + 1, len(raw.elevations)
+    if (first, last) == (0, whole):
         return raw
-    said = f"left out {first} stations at the beginning and {count - last} at the end"
+    said = f"left out {count(first, 'station')} at the beginning and {whole - last} at the end"
     return _part(raw, first, last)._replace(steps=(*raw.steps, said))
 
 
