@@ -417,8 +417,8 @@ def _fast(data: bytes, encoding: str, table: Table) -> FloatArray | None:
         or not _whole(data, encoding, table, incomplete)
     ):
         return None
-    values = np.full(frame.shape, np.nan) if table.texts else frame.to_numpy()
-    for n in set(range(table.width)) - table.texts if table.texts else ():
+    values = np.full(frame.shape, np.nan, order="F")  # column by column, as they were read
+    for n in set(range(table.width)) - table.texts:
         values[:, n] = frame[n].to_numpy()
     return values
 
