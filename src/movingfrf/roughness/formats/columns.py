@@ -336,6 +336,9 @@ def _first_fault(data: bytes, encoding: str, layout: ColumnLayout) -> str | None
             return f"line {number}: expected numbers separated by {said}, got {line[:60]!r}"
         if len(fields) > len(layout.names):
             return f"line {number}: expected {len(layout.names)} columns as before, got {len(fields)}"
+        # Before 3.1 pandas does not take it for infinite.
+        if any(np.isinf(float(field.replace(",", "."))) for field in fields if NUMBER.fullmatch(field)):
+            return f"line {number}: station and elevation must be finite, got {line[:60]!r}"
     return None
 
 
