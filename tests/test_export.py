@@ -207,6 +207,31 @@ def test_refusals(results, tmp_path, capsys):
     assert [file.name for file in tmp_path.iterdir()] == ["a.nc"]
 
 
+def test_a_variable_of_ones_own(results, tmp_path):
+    """Along a dimension that the package does not know."""
+    own = results["loaded"].assign(shape=(("time", "mode"), np.ones((200, 2)), {"units": "kg"}))
+    heads, _ = table(exported(own, ".csv"))
+    assert heads[-2:] == ["shape mode 0 [kg]", "shape mode 1 [kg]"]
+    pyuff = pytest.importorskip("pyuff", reason="the extra `io` is not installed")
+    mf.export(own, tmp_path / "a.uff")
+    assert pyuff.UFF(str(tmp_path / "a.uff")).read_sets()[-1]["rsp_node"] == 6002
+
+
+def test_what_pyuff_hides(results, tmp_path, monkeypatch):
+    pyuff = pytest.importorskip("pyuff", reason="the extra `io` is not installed")
+
+    def full(*_):
+        try:
+            raise OSError(28, "No space left on device")
+        except OSError:
+            raise Exception("Error writing data-set #58")  # noqa: B904
+
+    monkeypatch.setattr(pyuff.UFF, "write_sets", full)
+    with pytest.raises(OSError, match="No space left"):
+        mf.export(results["coupled"], tmp_path / "a.uff")
+    assert not list(tmp_path.iterdir())
+
+
 def test_without_the_extra(results, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyuff", None)
     with pytest.raises(ValueError, match=r"need pyuff: pip install 'movingfrf\[io\]'"):

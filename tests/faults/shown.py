@@ -116,8 +116,8 @@ FAULTS = [
     Fault(
         "two places at one node",
         "results/exports/universal.py",
-        "[response.dim] + response.number",
-        "[response.dim]",
+        "(response.dim, form.other_nodes) + response.number",
+        "(response.dim, form.other_nodes)",
     ),
     Fault(
         "time of day in MATLAB's head",

@@ -75,5 +75,7 @@ def _place(result: xr.Dataset, dim: str, number: int) -> Place:
         names = result.contact_name.values.tolist() if "contact_name" in result.coords else []
         named = len(set(names)) == len(names) > number and names[number]
         return Place(dim, number, names[number] if named else f"contact {number}")
-    value = result[dim].values[number] if dim in result.coords else number
-    return Place(dim, number, str(value) if dim == "dof" else f"at {value:.12g} m")
+    if dim not in result.coords:
+        return Place(dim, number, f"{dim} {number}")
+    value = result[dim].values[number]
+    return Place(dim, number, f"at {value:.12g} m" if result[dim].attrs.get("units") == "m" else str(value))

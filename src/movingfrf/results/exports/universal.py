@@ -35,6 +35,7 @@ class Dataset58:
     scalar: int
     # Nodes are numbered by what they are, so that no two places have one [a convention].
     first_node: Mapping[str, int]
+    other_nodes: int
     letters: int  # of an entity's name
 
 
@@ -59,6 +60,7 @@ DATASET_58 = Dataset58(
     down=-3,
     scalar=0,
     first_node={"contact": 1, "source": 1, "dof": 1001, "load": 2001, "point": 3001, "place": 4001, "ahead": 5001},
+    other_nodes=6001,
     letters=10,
 )
 
@@ -78,7 +80,11 @@ def made(result: xr.Dataset) -> bytes:
         raise ValueError(f"a universal file needs at least two points of {axis_of(result)}, got {x.size}")
     with scratch() as folder:
         file = folder / "result.uff"
-        pyuff.UFF(str(file)).write_sets([_set(result, x, column) for column in columns(result)], "overwrite")
+        try:
+            pyuff.UFF(str(file)).write_sets([_set(result, x, column) for column in columns(result)], "overwrite")
+        except Exception as error:
+            # A full disk or an interrupt stands behind an exception of pyuff's own, which does not say so.
+            raise (error.__context__ or error) from None
         return file.read_bytes()
 
 
@@ -97,7 +103,7 @@ def _set(result: xr.Dataset, x: np.ndarray[Any, Any], column: Column) -> dict[st
         "id4": f"movingfrf {VERSION}",
         "func_type": form.functions.get(kind, form.history),
         "rsp_ent_name": response.name[: form.letters],
-        "rsp_node": form.first_node[response.dim] + response.number,
+        "rsp_node": form.first_node.get(response.dim, form.other_nodes) + response.number,
         "rsp_dir": form.scalar if turns else form.up if upwards else form.down,
         "ref_ent_name": reference.name[: form.letters],
         "ref_node": form.first_node[reference.dim] + reference.number if sources else 0,
