@@ -76,6 +76,12 @@ def test_markers_stand_out(marker):
     assert (found.value, found.number, found.first) == (marker, 3, 20)
 
 
+def test_markers_at_every_other_station_stand_out():
+    road = 0.01 * np.sin(np.arange(500.0) / 7)
+    road[::2] = -9999.0
+    assert [(each.value, each.number) for each in sentinels(road)] == [(-9999.0, 250)]
+
+
 def test_several_markers_and_gaps_beside_them():
     road = 0.01 * np.sin(np.arange(500.0) / 7)
     road[[3, 4, 5, 300]] = [-9999.0, -9999.0, -999.25, np.nan]

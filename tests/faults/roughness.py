@@ -321,7 +321,7 @@ FAULTS = [
     ),
     Fault("single precision is uneven", "roughness/profile.py", "uneven = 0.02", "uneven = 1e-6"),
     Fault("six digits whatever it takes", "_basics/wording.py", "range(digits, 18)", "range(digits, digits + 1)"),
-    Fault("a kerb for a marker", "roughness/sentinels.py", "if offs[value] > STANDING.steps * step", "if True"),
+    Fault("a kerb for a marker", "roughness/sentinels.py", "if off > STANDING.steps * step", "if True"),
     Fault("unit of a name overlooked", "roughness/formats/roles.py", "stated = words.pop()", "words.pop()"),
     Fault(
         "a reference followed anywhere",

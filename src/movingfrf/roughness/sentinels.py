@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -71,34 +72,29 @@ def sentinels(elevations: FloatArray) -> list[Sentinel]:
 
 def _of_path(column: FloatArray) -> list[Sentinel]:
     there = column[np.isfinite(column)]
-    apart = np.abs(np.diff(there))
-    # Beside what stands out there is a large step; most roads are done with here.
-    if there.size < 3 or apart.max() <= STANDING.steps * np.median(apart):
-        return []
-    values, numbers = np.unique(there, return_counts=True)
-    if values.size < 3:
-        return []
-    gaps = np.diff(values)
     # The lowest and the highest values, each with what lies between it and the next one towards the middle.
-    most = min(STANDING.most, values.size // 2)
-    low, high = gaps[:most], gaps[-most:]
-    ends = [
-        *zip(values[:most], numbers[:most], low, strict=True),
-        *zip(values[-most:], numbers[-most:], high, strict=True),
-    ]
-    candidates = {
-        float(value): int(number) for value, number, off in ends if off > STANDING.height or _is_marker(value)
-    }
-    rest = column[np.isfinite(column) & ~np.isin(column, list(candidates))]
+    ends = _lowest(there) + [(-value, off) for value, off in _lowest(-there)]
+    candidates = [value for value, off in ends if off > STANDING.height or _is_marker(value)]
+    rest = there[~np.isin(there, candidates)]
     if rest.size < 2:
         return []
     step = float(np.abs(np.diff(rest)).max())
-    offs = {value: float(np.abs(rest - value).min()) for value in candidates}
-    return [
-        Sentinel(value, number, offs[value], int(np.flatnonzero(column == value)[0]))
-        for value, number in candidates.items()
-        if offs[value] > STANDING.steps * step
-    ]
+    found = []
+    for value in candidates:
+        off, places = float(np.abs(rest - value).min()), np.flatnonzero(column == value)
+        if off > STANDING.steps * step:
+            found.append(Sentinel(value, places.size, off, int(places[0])))
+    return found
+
+
+def _lowest(values: FloatArray) -> list[tuple[float, float]]:
+    """Find the lowest different values, of few the lower half, each with how far the next one is above it."""
+    lowest: list[float] = []
+    while values.size and len(lowest) <= STANDING.most:
+        lowest.append(float(values.min()))
+        values = values[values > lowest[-1]]
+    lower = lowest if values.size else lowest[: len(lowest) // 2 + 1]
+    return [(one, above - one) for one, above in pairwise(lower)]
 
 
 def _is_marker(value: float) -> bool:
