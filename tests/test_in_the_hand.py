@@ -108,6 +108,8 @@ def test_zero_and_nan():
     flat = mf.Profile(STATIONS, 0 * STATIONS)  # described without a fit, by nan
     assert mf.describe_profile(flat) == mf.describe_profile(flat)
     assert content(float("nan")) == content(np.float64("nan"))
+    several = [np.array([1.0, sign * np.nan]) for sign in (1.0, -1.0)]
+    assert content(several[0]) == content(several[1])
     assert content(np.array([1, 2])) == content(np.array([1.0, 2.0]))
     assert content(np.array([1.0, 2.0])) != content(np.array([2.0, 1.0]))
 

@@ -399,7 +399,10 @@ ISO = mf.IsoRoad.of_class("A")
         (lambda: mf.realise(ISO, length=9.0, step=0.0), "step must be positive"),
         (lambda: mf.realise(ISO, length=9.0, covering=(3.0, 3.0)), "covering must be a first and a last distance"),
         (lambda: mf.realise(ISO, length=9.0, covering=(3.0,)), "covering must have shape"),
-        (lambda: mf.realise(16e-6, length=9.0), "spectrum must be a spectrum, IsoRoad or another, got 1.6e-05"),
+        (
+            lambda: mf.realise(16e-6, length=9.0),
+            "spectrum must be a roughness spectrum, as IsoRoad is, got 1.6e-05",
+        ),
         (lambda: mf.IsotropicCoherence(waviness=0.0), "waviness must be positive"),
         (lambda: mf.IsotropicCoherence(waviness=11.0), "waviness must be at most 10"),
         (lambda: mf.ExponentialCoherence(decay=-1.0), "decay must not be negative"),

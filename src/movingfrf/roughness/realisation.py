@@ -14,7 +14,7 @@ from movingfrf._basics.checks import Checks, checking, shown
 from movingfrf._basics.wording import told_apart
 from movingfrf.roughness.profile import SLACK, Profile
 from movingfrf.roughness.spectra.coherence import Coherence, presumed
-from movingfrf.roughness.spectra.spectrum import Spectrum, require_spectrum
+from movingfrf.roughness.spectra.spectrum import Spectrum, is_spectrum
 
 
 class Harmonics(NamedTuple):
@@ -120,7 +120,6 @@ def realise(
     >>> realise(mf.IsoRoad.of_class("A"), length=100.0, seed=1, across=[0.75, -0.75]).paths
     2
     """
-    require_spectrum(spectrum)
     with checking() as check:
         ask = _asked(check, spectrum, length, step, seed, start, covering, across, coherence)
     return _realised(ask, _phases, f"{spectrum}, seed {ask.said_seed}")
@@ -203,7 +202,6 @@ def realise_laplace(
     >>> road.stations[-1].item()
     1000.0
     """
-    require_spectrum(spectrum)
     with checking() as check:
         ask = _asked(check, spectrum, length, step, seed, start, covering, across, coherence)
         # Nearer to a Gaussian road the gamma distribution has no meaningful shape.
@@ -260,11 +258,7 @@ def _asked(
     coherence: Coherence | None,
 ) -> _Asked:
     # Eight stations to the shortest wave: the spline between them misses little.
-    eighth = 1.0
-    if hasattr(spectrum, "variance_below"):
-        eighth = 0.125 / spectrum.band[1]
-    else:
-        check.refuse("spectrum", f"must be a spectrum, IsoRoad or another, got {shown(spectrum)}")
+    eighth = 0.125 / spectrum.band[1] if is_spectrum(check, spectrum) else 1.0
     length = check.positive("length", length, "m")
     step = check.positive("step", eighth if step is None else step, "m")
     several = isinstance(seed, (list, tuple))

@@ -146,7 +146,14 @@ def require_spectrum(spectrum: object) -> None:
     ValueError
         If it does not keep the contract of a `Spectrum`.
     """
-    kept = all(hasattr(spectrum, name) for name in ("band", "density", "variance_below"))
     with checking() as check:
-        if isinstance(spectrum, type) or not kept:
-            check.refuse("spectrum", mistaken("spectrum", spectrum))
+        is_spectrum(check, spectrum)
+
+
+def is_spectrum(check: Checks, spectrum: object) -> bool:
+    """Refuse what is no spectrum, along with whatever else is wrong; whether it is one."""
+    kept = all(hasattr(spectrum, name) for name in ("band", "density", "variance_below"))
+    if isinstance(spectrum, type) or not kept:
+        check.refuse("spectrum", mistaken("spectrum", spectrum))
+        return False
+    return True
