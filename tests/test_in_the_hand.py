@@ -267,7 +267,7 @@ def test_every_argument_of_a_kind_is_looked_at():
         "vehicle": "a Vehicle",
         "profile": "a Profile",
         "spectrum": "a roughness spectrum",
-        "result": "response",
+        "result": "(response|result)",
     }
     needed = {"speed": 1.0, "duration": 1.0, "length": 9.0, "frequency": [1.0], "wavelength": [0.1], "step": 1.0}
     needed |= {"radius": 1.0, "spike": 1.0, "paths": [0], "file": "x.csv", "mount": {}, "slope": 3.0, "dof": "body"}

@@ -12,7 +12,7 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.roughness.files import FORMATS
-from movingfrf.roughness.formats import hdf
+from movingfrf.roughness.formats import apart
 from movingfrf.roughness.formats.gpx import distances
 from tests import fuzz_readers
 from tests.reader_parts import DATA, needs, written
@@ -128,11 +128,11 @@ def test_an_hdf5_library_that_hangs_or_crashes_is_not_waited_for(tmp_path, monke
     """As it does on some damaged files; too rare to keep one that does so with every version of it."""
     mf.write_profile(fuzz_readers.profile(), tmp_path / "road.nc")
     with monkeypatch.context() as patched:
-        patched.setattr(hdf, "LIMITS", replace(hdf.LIMITS, patience=0.0))
+        patched.setattr(apart, "LIMITS", replace(apart.LIMITS, patience=0.0))
         with pytest.raises(ValueError, match=r"road\.nc: is damaged: reading it comes to no end"):
             mf.read_profile(tmp_path / "road.nc")
     monkeypatch.setattr(sys, "executable", "/bin/false")
-    with pytest.raises(ValueError, match=r"road\.nc: is damaged, or no HDF5 file: the HDF5 library fails on it"):
+    with pytest.raises(ValueError, match=r"road\.nc: is damaged, or no HDF5 file: the library fails on it"):
         mf.read_profile(tmp_path / "road.nc")
 
 

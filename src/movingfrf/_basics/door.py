@@ -115,6 +115,10 @@ def wanted_kinds() -> Mapping[str, Wanted]:
                 "Dataset": "`read_scenario(file)` reads one; a result is what `scenario.run()` returns",
             },
         ),
+        "result": Wanted(
+            "be a result of movingfrf over time or frequency",
+            {**result, "Dataset": "`simulate`, `random_response` and their like return such"},
+        ),
         "coupled result": Wanted(
             "be the coupled response of a vehicle, with contact_force, static_load and acceleration",
             {**result, "Dataset": "`simulate`, `cdfm`, `sim` and `duhamel` return such"},

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from movingfrf._basics.checks import checking
+from movingfrf._basics.door import mistaken
 from movingfrf._basics.output import write_whole
 from movingfrf.results.exports import columns, matlab, universal
 from movingfrf.results.labels import kind_of
@@ -79,5 +80,5 @@ def exported(result: xr.Dataset, ending: str) -> bytes:
         if ending.lower() not in kinds:
             check.refuse("file", f"must end in {', '.join(kinds)}, got {ending or 'no ending'!r}")
         if kind_of(result) is None or not {"time", "frequency"} & set(result.dims):
-            check.refuse("result", "must be a result of movingfrf over time or frequency")
+            check.refuse("result", mistaken("result", result))
     return kinds[ending.lower()](result)

@@ -134,8 +134,8 @@ def pothole(*, depth: float, width: float, edge: float, at: float, length: float
     Examples
     --------
     >>> hole = pothole(depth=0.04, width=0.6, edge=0.1, at=5.0, length=20.0)
-    >>> hole.along(0)([4.9, 5.05, 5.3]).round(6).tolist()
-    [0.0, -0.02, -0.04]
+    >>> hole.along(0)([5.05, 5.3]).round(6).tolist()
+    [-0.02, -0.04]
     """
     with checking() as check:
         if (depth := check.finite("depth", depth, "m")) == 0:

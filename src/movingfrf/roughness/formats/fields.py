@@ -17,14 +17,18 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import option
 
-# What may stand between two fields, tried in this order; None is any white space.
-SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", None: "spaces"}
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Writing:
     """How numbers, what is missing, and comments are written; and how much of a text tells what it is like."""
 
+    # What may stand between two fields, tried in this order, and what it is called; None is any white space.
+    separators: tuple[tuple[str | None, str], ...] = (
+        (";", "semicolons"),
+        ("\t", "tabs"),
+        (",", "commas"),
+        (None, "spaces"),
+    )
     # Fortran writes D for E, and leaves it out before an exponent of three digits.
     number: re.Pattern[str] = re.compile(
         r"[+\-−]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][+\-−]?\d+)?|[+-]?\d*[.,]\d+[+-]\d{3}", re.ASCII
@@ -85,7 +89,7 @@ class Table(NamedTuple):
     @property
     def said(self) -> str:
         """What separates the fields."""
-        return SEPARATORS[self.separator]
+        return dict(WRITING.separators)[self.separator]
 
     def fields(self, text: str) -> list[str]:
         """Fields of a row."""
@@ -229,8 +233,8 @@ def find_table(data: bytes, encoding: str) -> Table:
     """
     shown = list(islice(lines(data, encoding), WRITING.looked_at))
     asked = re.fullmatch(r"\"?sep=(.)\"?[;,\t]*\s*", shown[0].text, re.IGNORECASE) if shown else None
-    candidates: tuple[str | None, ...] = tuple(SEPARATORS)
-    if asked and asked[1] in SEPARATORS:
+    candidates: tuple[str | None, ...] = tuple(separator for separator, _ in WRITING.separators)
+    if asked and asked[1] in candidates:
         candidates = (asked[1],)
         shown = shown[1:]
     for n, line in enumerate(shown):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from movingfrf._basics.checks import option
 from movingfrf.roughness.formats.base import unit_in
-from movingfrf.roughness.formats.fields import SEPARATORS, WRITING, Line, Table, grouped, is_number, split
+from movingfrf.roughness.formats.fields import WRITING, Line, Table, grouped, is_number, split
 from movingfrf.roughness.formats.roles import Head, head, kind_of_unit
 
 
@@ -104,7 +104,7 @@ def _names(text: str, table: Table) -> list[str]:
     ways = [
         re.split(r"\s{2,}|\t+", text.strip()),
         [name.strip(" ;,\t") for name in re.findall(r"[^\[(]+[\[(][^\])]*[\])]", text)],
-        *(split(text, separator) for separator in SEPARATORS if separator),
+        *(split(text, separator) for separator, _ in WRITING.separators if separator),
         _between_spaces(text),
     ]
     fitting = (names for names in ways if len(names) == table.width and _station_in(names))

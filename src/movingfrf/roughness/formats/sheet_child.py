@@ -8,6 +8,7 @@ standard error.
 from __future__ import annotations
 
 import csv
+import errno
 import json
 import sys
 from pathlib import Path
@@ -50,5 +51,7 @@ if __name__ == "__main__":
     try:
         extract(Path(sys.argv[1]), Path(sys.argv[2]))
     except (python_calamine.CalamineError, OSError, ValueError, MemoryError) as error:
+        if getattr(error, "errno", None) == errno.ENOSPC:
+            sys.exit(4)
         print(" ".join(str(error).split()) or "it takes too much memory", file=sys.stderr)
         sys.exit(3)

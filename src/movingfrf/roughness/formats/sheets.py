@@ -5,35 +5,17 @@ A damaged file may make the library crash, or take memory without end, so it is 
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
-import tempfile
 import zipfile
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.matlab_file import UNPACKING
+from movingfrf._basics.undoing import scratch
 from movingfrf.roughness.formats import columns
+from movingfrf.roughness.formats.apart import taken_apart
 from movingfrf.roughness.formats.base import Format, RawProfile, Recording, Wanted, chosen_recording
-from movingfrf.roughness.formats.hdf import LIMITS
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Book:
-    """How spreadsheets begin, and what one may take: conventions."""
-
-    zipped: bytes = b"PK\x03\x04"
-    parts: tuple[bytes, ...] = (b"[Content_Types]", b"_rels/", b"docProps/", b"xl/", b"customXml/", b"mimetype")
-    older: bytes = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
-    memory: int = 2**31  # beside a hundred times the size of the file [byte]
-    times: int = 100
-
-
-BOOK = Book()
 
 
 class Sheet(NamedTuple):
@@ -93,30 +75,25 @@ def _texts(path: Path) -> list[tuple[str, bytes]]:
             raise ValueError(f"is damaged, or no spreadsheet: {error}") from None
         if unpacked > UNPACKING.most(size):
             raise ValueError(f"unpacks to more than {UNPACKING.times} times its size: unpack it elsewhere first")
-    with tempfile.TemporaryDirectory(prefix="movingfrf-") as name:
-        folder = Path(name)
-        child = Path(__file__).with_name("sheet_child.py")
-        most = BOOK.memory + BOOK.times * size
-        command = [sys.executable, "-P", str(child), str(path.resolve()), name, str(most)]
-        try:
-            done = subprocess.run(
-                command, capture_output=True, timeout=LIMITS.patience + size / LIMITS.pace, check=False
-            )
-        except subprocess.TimeoutExpired:
-            raise ValueError("is damaged: reading it comes to no end") from None
-        index = folder / "index.json"
-        if done.returncode or not index.exists():
-            said = done.stderr.decode("utf-8", "replace").strip().splitlines() if done.returncode == 3 else []
-            raise ValueError(f"is damaged, or no spreadsheet{f': {said[-1]}' if said else ''}")
-        names = json.loads(index.read_text(encoding="utf-8"))
+    with scratch() as folder:
+        most = 2**31 + 100 * size  # memory of a program that holds all cells [byte; a convention]
+        names = taken_apart(path, folder, "sheet_child.py", most, "spreadsheet")
         return [(name, (folder / f"{n}.txt").read_bytes()) for n, name in enumerate(names)]
 
 
 def _recognises(head: bytes) -> bool:
-    if head.startswith(BOOK.older):
-        return True
+    older, zipped = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", b"PK\x03\x04"
+    # What is zipped begins with one of these.
+    first_of = (
+        b"[Content_Types]",
+        b"_rels/",
+        b"docProps/",
+        b"xl/",
+        b"customXml/",
+        b"mimetype",
+    )
     length = int.from_bytes(head[26:28], "little")
-    return head.startswith(BOOK.zipped) and head[30 : 30 + length].startswith(BOOK.parts)
+    return head.startswith(older) or (head.startswith(zipped) and head[30 : 30 + length].startswith(first_of))
 
 
 FORMAT = Format(
