@@ -22,15 +22,8 @@ on_linux = pytest.mark.skipif(
 )
 
 
-def by_default():
-    """Undo what a shell may do to processes in the background, which hear no interrupt."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
 def started(command, folder):
-    return subprocess.Popen(
-        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=by_default
-    )
+    return subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 def await_first_instruction(process):
@@ -75,7 +68,7 @@ def test_told_to_end_early_it_says_nothing(tmp_path):
     assert process.returncode == 143
 
 
-def outcome(script, folder, *, name="movingfrf", before=by_default):
+def outcome(script, folder, *, name="movingfrf", before=None):
     """Run a script that passes for the command, or not, by its name: status, and what it said."""
     (folder / name).write_text("import os, signal\nfrom pathlib import Path\n" + script)
     process = subprocess.run(
