@@ -322,3 +322,19 @@ def test_a_stated_step_that_memory_does_not_hold_is_refused():
     car = mf.quarter_car(**QUARTER_TRUCK)
     with pytest.raises(ValueError, match=r"solved in steps of 1e-09 s needs about .* GiB"):
         mf.simulate(PAVEMENT, car, road, speed=20.0, duration=3.0, solved_step=1e-9)
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_lost_contact_is_seen_between_the_samples_of_the_output():
+    """Over an edge the wheel lifts for milliseconds; in output of 20 ms it may be on the ground at every sample."""
+    truck = mf.catalogue("tractor_semitrailer")
+    slabs = mf.faulted_slabs(height=0.006, spacing=5.0, edge=0.04, start=-20.0, length=60.0)
+    found = {}
+    for step in (1e-3, 2e-2):
+        result = mf.simulate(mf.RigidGuideway(), truck, slabs, speed=22.0, duration=0.7, time_step=step)
+        lifted = [finding for finding in json.loads(result.attrs["findings"]) if finding["code"] == "contact_lost"]
+        name = "solved_contact_force" if "solved_time" in result else "contact_force"
+        share = float((result[name].values + result.static_load.values < 0).mean(axis=0).max())
+        assert f"{share:.2%}" in lifted[0]["message"]
+        found[step] = share
+    assert found[2e-2] == pytest.approx(found[1e-3], rel=0.2)

@@ -5,6 +5,12 @@ from __future__ import annotations
 from tests.faults.fault import Fault
 
 FAULTS = [
+    Fault(
+        "contact lost at the output's instants alone",
+        "response/simulation.py",
+        "fine.force.values[0]), journey.time_step / finer",
+        "histories.force.values[0]), journey.time_step",
+    ),
     Fault("threads of BLAS let loose", "response/batches.py", "limit(limits=1)", "limit(limits=2)"),
     # Spectra and time.
     Fault("window sign", "response/line.py", "np.exp(-decay * step", "np.exp(decay * step"),

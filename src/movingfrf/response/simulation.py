@@ -186,9 +186,12 @@ def driven(
         [*(f"contact force {n}" for n in wheels), *(f"acceleration of {name}" for name in vehicle.dof_names)],
         journey.time_step,
     )
+    # What is measured, and whether contact is kept, is taken from the response in the steps in which it was solved.
+    finer = int(np.ceil(journey.time_step / driven_by.step)) if hidden else 1
+    fine = response.histories(driven_by.line, finer) if hidden else histories
     found = [
         *find.contact_lost(
-            turned(steady.load[:, None] + histories.force.values[0]), journey.time_step, vehicle.standing
+            turned(steady.load[:, None] + fine.force.values[0]), journey.time_step / finer, vehicle.standing
         ),
         *surveyed.findings,
         *find.one_path(profile.one_path, vehicle.paths, vehicle.across),
@@ -207,10 +210,7 @@ def driven(
         "static_deflection": steady.deflection,
     }
     if hidden:
-        # What is measured is taken from the response in the steps in which it was solved.
-        finer = int(np.ceil(journey.time_step / driven_by.step))
         times = journey.time_step / finer * np.arange(journey.samples * finer)
-        fine = response.histories(driven_by.line, finer)
         seen = excitation.elevation(journey.speed * times)
         values["solved_time"] = times
         values |= {f"solved_{name}": value for name, value in _records(fine, steady, seen).items()}
