@@ -366,7 +366,7 @@ def test_a_profile_shorter_than_the_journey(tmp_path):
     text += TEMPLATE[TEMPLATE.index("[run]") :]
     assert faults(text, folder=tmp_path) == {
         "roughness:": "the profile must cover the journey from -2.05387 m to 242.216 m, "
-        "but it reaches from 0 m to 99 m"
+        "but it reaches from 0 m to 99 m: the journey is 145.27 m too long"
     }
     missing = faults(text.replace("short.csv", "none.csv"), folder=tmp_path)
     assert "No such file" in missing["roughness:"]

@@ -190,3 +190,18 @@ def test_a_footprint_may_be_asked_for_however_far_beyond_the_profile():
     excitation = excite(SURFACE, TOUCH, start=2.0, distance=30.0, blend=0.0)
     beyond = excitation.elevation(np.linspace(0.0, 4000.0, 20_000))
     np.testing.assert_allclose(beyond[:, -8192:], beyond[:, -1:] + np.zeros(8192), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("begins", "said"),
+    [
+        (12345.0, r"`start` greater by 12345 to 12384 m makes it fit"),
+        (-500.0, r"`start` smaller by 461 to 500 m makes it fit"),
+        (0.5, r"`start` greater by 0.5 to 39.5 m makes it fit"),
+    ],
+)
+def test_a_journey_beside_its_profile_is_told_where_it_fits(begins, said):
+    profile = mf.Profile(begins + np.arange(0.0, 50.0, 1.0), np.zeros(50))
+    car = mf.catalogue("golden_car")
+    with pytest.raises(ValueError, match=said):
+        mf.simulate(mf.RigidGuideway(), car, profile, speed=10.0, duration=1.0)

@@ -194,10 +194,11 @@ def _peak_force(result: xr.Dataset) -> tuple[float, float, int]:
     return float(peaks[contact]), float(result.time.values[places[contact]]), contact
 
 
-def _zoom_figures(result: xr.Dataset, window: float = 1.5) -> list[Illustration]:
-    """Draw the forces in a window [s] around the largest one, if the record is long enough for it to show more."""
+def _zoom_figures(result: xr.Dataset) -> list[Illustration]:
+    """Draw the forces in a window around the largest one, if the record is long enough for it to show more."""
     duration = duration_of(result)
     peak, instant, contact = _peak_force(result)
+    window = _window(result, contact)
     if duration <= 2 * window or not peak:
         return []
     first = min(max(instant - window / 2, 0.0), duration - window)
@@ -209,12 +210,21 @@ def _zoom_figures(result: xr.Dataset, window: float = 1.5) -> list[Illustration]
         line.set_linewidth(1.5)
     legend_above(ax)
     caption = (
-        f"The {window:g} s around the largest dynamic force ({number(1e-3 * peak)} kN under contact {contact}), "
-        "there and under the nearest contact of the same path. They meet the same spot one after the other: look "
-        "for the same event with its delay. "
+        f"The {number(window, 2)} s around the largest dynamic force ({number(1e-3 * peak)} kN under contact "
+        f"{contact}), there and under the nearest contact of the same path. They meet the same spot one after the "
+        "other: look for the same event with its delay. "
         f"Dashed: the {'levels at the beginning' if stands_still(result) else 'static levels'}."
     )
     return [illustrated("zoom", "Contact forces around the peak", caption, figure)]
+
+
+def _window(result: xr.Dataset, contact: int) -> float:
+    """So long [s] that vibrations can be told apart, and what a contact meets is seen under its neighbour too."""
+    longest, swings = 1.5, 40.0  # [s], and vibrations that a figure bears; conventions
+    force, position = result.contact_force.values[:, contact], result.position.values[_neighbours(result, contact)]
+    rate = np.count_nonzero(np.diff(force > 0)) / (2.0 * duration_of(result))
+    delay = float(np.ptp(position)) / abs(result.attrs["speed"])
+    return min(longest, max(swings / max(rate, swings / longest), 3.0 * delay))
 
 
 def _neighbours(result: xr.Dataset, contact: int, most: int = 2) -> list[int]:

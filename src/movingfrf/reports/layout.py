@@ -84,7 +84,9 @@ def arrange(figure: Figure) -> None:
             ax.set_position((left / width, 1.0 - (top + high) / height, wide / width, high / height))
     for ax, spec in axes:
         (_, wide), (_, high) = across[spec.colspan.start], down[spec.rowspan.start]
-        beside = max(_labels(other) for other, at in axes if at.colspan.start == spec.colspan.start)
+        beside = max(
+            _labels(other.yaxis, "labelleft") for other, at in axes if at.colspan.start == spec.colspan.start
+        )
         ax.yaxis.set_label_coords(-(ROOM.tick + beside + ROOM.gap) / wide, 0.5)
         ax.xaxis.set_label_coords(0.5, -(ROOM.tick + ROOM.line + ROOM.gap) / high)
 
@@ -105,8 +107,8 @@ def _margins(ax: Axes) -> Margins:
     names = [] if legend is None else [text.get_text() for text in legend.get_texts()]
     behind = max((len(text.get_text()) for text in ax.texts if isinstance(text, Annotation)), default=0)
     return Margins(
-        left=ROOM.least + ROOM.tick + _labels(ax) + name * bool(ax.get_ylabel()),
-        right=ROOM.least + 2 * ROOM.letter * behind,
+        left=ROOM.least + ROOM.tick + _labels(ax.yaxis, "labelleft") + name * bool(ax.get_ylabel()),
+        right=ROOM.least + max(2 * ROOM.letter * behind, 0.5 * _labels(ax.xaxis, "labelbottom") - ROOM.letter),
         below=ROOM.least
         + ROOM.tick
         + ROOM.line * _labelled(ax.xaxis, "labelbottom")
@@ -119,14 +121,14 @@ def _labelled(axis: Axis, side: str) -> bool:
     return bool(axis.get_tick_params().get(side, True))
 
 
-def _labels(ax: Axes) -> float:
-    """Width of the longest tick label of the ordinate [inch]."""
-    if not _labelled(ax.yaxis, "labelleft"):
+def _labels(axis: Axis, side: str) -> float:
+    """Width of the longest tick label of an axis [inch]."""
+    if not _labelled(axis, side):
         return 0.0
-    low, high = sorted(ax.yaxis.get_view_interval())
+    low, high = sorted(axis.get_view_interval())
     slack = 1e-9 * (high - low)
-    places = [place for place in ax.yaxis.get_majorticklocs() if low - slack <= place <= high + slack]
-    return ROOM.letter * max(map(len, ax.yaxis.get_major_formatter().format_ticks(places)), default=0)
+    places = [place for place in axis.get_majorticklocs() if low - slack <= place <= high + slack]
+    return ROOM.letter * max(map(len, axis.get_major_formatter().format_ticks(places)), default=0)
 
 
 def _plain_powers(axis: Axis) -> None:

@@ -59,8 +59,12 @@ def opened(file: Path) -> xr.Dataset:
     import xarray as xr
 
     # Asked first, since the library below hides why a file cannot be read in half a page of text.
-    with file.open("rb"):
-        pass
+    with file.open("rb") as first:
+        if first.read(3) == b"CDF":
+            raise ValueError(
+                f"{file}: is netCDF of version 3, which cannot hold a result as it is: write it as version 4, "
+                'result.to_netcdf(file, engine="h5netcdf")'
+            )
     try:
         with xr.open_dataset(file, engine="h5netcdf") as opened:
             result: xr.Dataset = opened.load()

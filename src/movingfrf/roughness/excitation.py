@@ -394,9 +394,17 @@ def require_cover(profile: Profile, first: float, last: float, paths: Sequence[i
     slack = SLACK * (1 + abs(last))
     if stations[0] > first + slack or stations[-1] < last - slack:
         begins, ends, from_here, to_there = told_apart(first, last, stations[0], stations[-1])
+        least, most = stations[0] - first, stations[-1] - last
         raise ValueError(
             f"the profile must cover the journey from {begins} m to {ends} m, but it reaches from {from_here} m to "
-            f"{to_there} m"
+            f"{to_there} m: "
+            + (
+                f"the journey is {least - most:.6g} m too long"
+                if least > most
+                else f"`start` greater by {least:.6g} to {most:.6g} m makes it fit"
+                if least > 0
+                else f"`start` smaller by {-most:.6g} to {-least:.6g} m makes it fit"
+            )
         )
     if not profile.same_across and max(paths) >= profile.paths:
         raise ValueError(
