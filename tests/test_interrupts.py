@@ -177,6 +177,25 @@ def test_what_only_imports_the_package_keeps_its_own_handling(tmp_path):
     assert outcome(script, tmp_path) == (0, "False\n")
 
 
+@pytest.mark.parametrize(
+    "script",
+    [
+        "import sys\nsys.argv = ['x']\n",  # as programs do that take options off themselves
+        "import sys\nsys.argv.clear()\n",
+        "import sys\n",
+    ],
+)
+def test_what_has_the_name_among_its_arguments_is_not_the_command(script, tmp_path):
+    asks = "import movingfrf, signal\nprint(signal.getsignal(signal.SIGINT) is signal.default_int_handler)\n"
+    (tmp_path / "mine.py").write_text(script + asks)
+    for arguments in (["--project", "movingfrf.toml"], ["data/movingfrf"], ["-m", "movingfrf"]):
+        told = subprocess.run([sys.executable, "mine.py", *arguments], cwd=tmp_path, capture_output=True, text=True)
+        assert told.stdout == "True\n"
+    (tmp_path / "movingfrf_tool.py").write_text(script + asks)
+    told = subprocess.run([sys.executable, "-m", "movingfrf_tool"], cwd=tmp_path, capture_output=True, text=True)
+    assert told.stdout == "True\n"
+
+
 def test_an_interrupt_that_the_caller_ignores_stays_ignored(tmp_path):
     script = "import movingfrf\n" + INTERRUPT + "print('on')\n"
     assert outcome(script, tmp_path, before=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)) == (0, "on\n")

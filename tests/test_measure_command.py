@@ -128,7 +128,7 @@ def test_refusals(result, file, tmp_path, capsys):
         ([str(tmp_path / "inf.nc")], "inf.nc: has acceleration inf at time 0 s, dof pitch"),
         ([str(tmp_path / "loads.nc")], "result must be the coupled response of a vehicle, with contact_force"),
         ([str(tmp_path / "alien.nc")], "alien.nc: is no result of movingfrf"),
-        ([str(file), "--from", "3"], "since must lie within the record, 2.999 s at most, got 3.0 s"),
+        ([str(file), "--from", "3"], "since must leave at least two samples, so be 2.998 s at most, got 3.0 s"),
         ([str(file), "--from", "-1"], "since must not be negative, got -1.0 s"),
         ([str(file), "--slope", "-3"], "slope must be positive, got -3.0\n"),
         ([str(file), "--output", "m.txt"], "m.txt: must end in .json or .csv"),

@@ -55,7 +55,12 @@ FAULTS = [
     Fault("digits that nobody gave", "_basics/wording.py", "other[0]:.4g}", "other[0]:.9g}"),
     Fault("rails called road", "vehicles/vehicle.py", '"rail" if self.on_rails else "road"', '"road"'),
     Fault("neighbours counted singly", "_basics/wording.py", "numbers[rank] - rank)", "numbers[rank])"),
-    Fault("tonnes for kilograms", "scenarios/unusual.py", "if least <= value <= most:", "if True:"),
+    Fault(
+        "tonnes for kilograms",
+        "scenarios/unusual.py",
+        "if least * (1 - rounding) <= value",
+        "if True or value",
+    ),
     Fault("convoy called long", "scenarios/unusual.py", "np.ptp(places[part.contacts])", "np.ptp(places)"),
     Fault("absurd in silence", "scenarios/scenario.py", "warned(self.case.unusual))", "[])"),
     Fault("sentences broken anywhere", "commands/console.py", "break_long_words=False", "break_long_words=True"),

@@ -37,7 +37,12 @@ FAULTS = [
     ),
     # Told to end.
     Fault("heard too late", "__init__.py", "    heed()  # before", "    pass  # before"),
-    Fault("heard by others", "_basics/ending.py", '.partition(".")[0] == "movingfrf"', '.startswith("m")'),
+    Fault(
+        "heard by others",
+        "_basics/ending.py",
+        '.partition(".")[0] in ("movingfrf", "movingfrf-script")',
+        '.startswith("m")',
+    ),
     Fault("heard although ignored", "_basics/ending.py", "!= _signal.SIG_IGN:", "is not None:"),
     Fault("exception in place of an end", "_basics/ending.py", "    os._exit(128 + number)", "    sys.exit(130)"),
     Fault("nothing written, though it was", "_basics/ending.py", "if placed else", "if not placed else"),

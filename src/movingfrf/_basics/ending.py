@@ -21,21 +21,24 @@ placed: list[str] = []
 
 def is_command() -> bool:
     """Whether this process is the command `movingfrf`, and not one that imports the package."""
-    given, left = sys.orig_argv, len(getattr(sys, "argv", ()))
-    # The first argument that is not Python's own: a script, or what follows -m.
-    return 0 < left <= len(given) and os.path.basename(given[-left]).partition(".")[0] == "movingfrf"
+    script = (getattr(sys, "argv", None) or [""])[0]
+    if script == "-m":  # a module that Python still looks for, named behind -m or other letters with it
+        given = sys.orig_argv
+        named = [at for at, option in enumerate(given) if option[:1] == "-" != option[1:2] and option[-1:] == "m"]
+        script = given[named[0] + 1] if named and named[0] + 1 < len(given) else ""
+    return os.path.basename(script).partition(".")[0] in ("movingfrf", "movingfrf-script")
 
 
 def heed() -> None:
     """End at once where told to, from now on; what the caller of the process chose to ignore stays ignored."""
-    for number in _numbers():
+    for number in signals():
         if _signal.getsignal(number) != _signal.SIG_IGN:
             _signal.signal(number, _end)
 
 
 def ignore() -> None:
     """Hear nothing more, while Python tidies up."""
-    for number in _numbers():
+    for number in signals():
         _signal.signal(number, _signal.SIG_IGN)
 
 
@@ -44,7 +47,8 @@ def written() -> str:
     return f"already written: {', '.join(placed)}" if placed else "nothing was written"
 
 
-def _numbers() -> list[int]:
+def signals() -> list[int]:
+    """List what ends a process early, by number."""
     names = ("SIGINT", "SIGTERM", "SIGHUP")  # the last where a terminal is closed, which not every system knows
     return [getattr(_signal, name) for name in names if hasattr(_signal, name)]
 

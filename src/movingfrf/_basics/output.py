@@ -64,6 +64,9 @@ def replacing(folder: Path) -> Iterator[dict[str, Content | None]]:
                 moves.append((file, target))
                 with naming(target):
                     _write(file, content)
+                if target.exists():
+                    with suppress(OSError):  # a file system without them, or a file of somebody else
+                        shutil.copymode(target, file)
         with undisturbed():
             for _, target in moves:
                 made[:0] = [parent for parent in target.parents if not parent.exists()]
@@ -84,7 +87,8 @@ def write_whole(path: Path, content: Content) -> None:
     Parameters
     ----------
     path : Path
-        The file. What a link points to is written, not the link; a device or a pipe takes the content as it is.
+        The file. What a symbolic link points to is written, not the link, and who may read it stays; a hard link
+        parts from the others. A device or a pipe takes the content as it is.
     content : str, bytes or iterable of bytes
         What it shall hold.
 

@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 
-from movingfrf._basics.ending import pending
+from movingfrf._basics.ending import pending, signals
 
 
 @contextmanager
@@ -87,7 +87,7 @@ def carried_out(
 def undisturbed() -> Iterator[None]:
     """Hold back what interrupts or ends the process until the block is done."""
     held: list[int] = []
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.getsignal(number) for number in signals()}
     # Others than Python's own functions cannot be put back, or end the process without asking.
     heeded = {number: function for number, function in before.items() if callable(function)}
     try:

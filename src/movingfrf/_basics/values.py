@@ -96,8 +96,6 @@ def content(value: Any) -> Any:
         return frozenset((key, content(item)) for key, item in value.items())
     if isinstance(value, partial):
         return value.func, content(value.args), content(value.keywords)
-    if hasattr(value, "c") and hasattr(value, "x"):  # a spline of SciPy's
-        return type(value), content(value.c), content(value.x)
     return "nan" if isinstance(value, (float, complex)) and value != value else value
 
 

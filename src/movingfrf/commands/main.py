@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import gc
 import os
 import sys
@@ -62,11 +61,12 @@ def main(arguments: list[str] | None = None) -> int:
         said = str(error)
     except MemoryError:
         said = "the case does not fit into the memory of this machine"
+    except BrokenPipeError:
+        pass  # whoever read, as `head` does, has read enough
     except OSError as error:
         said = _failed(error)
     except SystemExit:
-        # So does rich end a process where nobody reads what it prints.
-        said = _failed(OSError(errno.EPIPE, os.strerror(errno.EPIPE), StandardStream.OUTPUT))
+        pass  # so does rich end a process where nobody reads what it prints
     if not said:
         return Status.DONE
     with suppress(OSError):

@@ -425,9 +425,8 @@ def samples_before(since: float, time_step: float, count: int) -> int:
     """
     with checking() as check:
         since = check.not_negative("since", since, "s")
-        if not check.faults and since > (count - 1) * time_step:
-            check.refuse(
-                "since", f"must lie within the record, {(count - 1) * time_step:.6g} s at most, got {since!r} s"
-            )
+        most = max(count - 2, 0) * time_step
+        if not check.faults and since > most:
+            check.refuse("since", f"must leave at least two samples, so be {most:.6g} s at most, got {since!r} s")
     # A time is a whole number of steps but for rounding.
     return int(np.ceil(since / time_step - 1e-6))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -256,7 +256,7 @@ class Scenario(Value):
     name: str
     text: str
     case: Drive | Passage
-    folder: Path = Path()
+    folder: Path = field(default=Path(), compare=False)
 
     def told(self) -> list[tuple[str, str]]:
         """Tell name and case, in words."""

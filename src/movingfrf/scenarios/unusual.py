@@ -104,7 +104,8 @@ def unusual(
 def _outside(what: str, value: float, usual: Range, unit: str, hint: str = "") -> Iterator[str]:
     """Say that a figure lies outside a range, if it does."""
     least, most = usual
-    if least <= value <= most:
+    rounding = 1e-9  # of a figure in other units
+    if least * (1 - rounding) <= value <= most * (1 + rounding):
         return
     unit = "" if unit == "1" else f" {unit}"
     between = f"{_written(least)} to {_written(most)}" if least else f"at most {_written(most)}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -49,7 +49,7 @@ class Journey:
     truncation: float | None = None
     blend: float = 5.0
     solved_step: float | None = None
-    in_kmh: bool = False
+    in_kmh: bool = field(default=False, compare=False)  # how it was given is no part of what it is
 
     def __post_init__(self) -> None:
         """Check the parameters."""
