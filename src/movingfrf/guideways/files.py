@@ -14,9 +14,7 @@ from movingfrf._basics.checks import ParameterError, checking
 from movingfrf._basics.door import mistaken
 from movingfrf.guideways.sampled import SampledGuideway
 
-# A file holds what a `SampledGuideway` is made of, under the same names; these are numbers, the others arrays.
-NUMBERS = ("time_step", "speed", "critical_speed", "stepped")
-
+# A file holds what a `SampledGuideway` is made of, under the same names.
 # Ten thousand samples at all 4,032 offsets of a train take 300 MiB [a convention].
 RECORD = Content(
     what="a sampled guideway",
@@ -83,9 +81,10 @@ def write_sampled_guideway(guideway: SampledGuideway, file: str | Path) -> None:
 
 def _arguments(found: Mapping[str, Any]) -> dict[str, Any]:
     """Give arrays the shapes that they have in Python: MATLAB knows neither numbers nor arrays of one axis."""
+    numbers = ("time_step", "speed", "critical_speed", "stepped")
     with checking() as check:
         RECORD.check_names(check, found)
-        for name in NUMBERS:
+        for name in numbers:
             if name in found and np.size(found[name]) != 1:
                 check.refuse(name, f"must be one number, got {np.size(found[name])}")
         remarks = [str(remark).partition(": ")[::2] for remark in np.ravel(found.get("remarks", []))]
@@ -93,7 +92,7 @@ def _arguments(found: Mapping[str, Any]) -> dict[str, Any]:
             check.refuse("remarks", 'must be texts of the form "code: message"')
     flat = {name: np.ravel(array) for name, array in found.items()}
     shaped = {
-        name: array if name == "response" else flat[name][0].item() if name in NUMBERS else flat[name]
+        name: array if name == "response" else flat[name][0].item() if name in numbers else flat[name]
         for name, array in found.items()
     }
     return shaped | {"remarks": remarks, "stepped": bool(shaped.get("stepped", False))}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 
 from movingfrf._basics.array_file import Arrays, Content, read_arrays, write_arrays
 from movingfrf._basics.checks import Checks, Fault, ParameterError, checking, real_numbers
+from movingfrf._basics.toml_file import tables_of, text_of
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
@@ -53,8 +53,8 @@ def read_vehicle(file: str | Path) -> Vehicle:
     Parameters
     ----------
     file : str or Path
-        The file. It holds `mass`, `damping`, `stiffness` (dof, dof), the latter two without the dashpots and springs
-        of the contacts, which stand apart: `contact_map` (contact, dof), and per contact `position` [m],
+        The file. It holds `mass`, `damping`, `stiffness` (dof, dof), the latter two without the dashpots and
+        springs of the contacts, which stand apart: `contact_map` (contact, dof), and per contact `position` [m],
         `contact_stiffness` [N/m] (`inf`: rigid) and, where wanted, `contact_damping` [N s/m], `path` (counted from
         0), `across` [m], `footprint` [m], `cams` [m], `contact_name`. Optional: `vertical` (dof), 1 for a
         translation and 0 for a rotation, else 1 for every degree of freedom; `dof_names`, else `dof_1`, `dof_2` …
@@ -193,6 +193,6 @@ def _row(check: Checks, name: str, value: Any, count: int | None = None) -> np.n
 
 def _read_toml(path: Path, _: Content) -> Arrays:
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path}: is not TOML: {error}") from None
+        return tables_of(text_of(path.read_bytes()))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None

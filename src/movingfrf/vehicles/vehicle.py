@@ -311,9 +311,9 @@ def _check_free(check: Checks, vehicle: Vehicle) -> None:
             # What the contacts add, if the file of another program has them in its matrices.
             theirs = contact_map.T @ (np.where(np.isinf(at_contacts), 0.0, at_contacts) * (contact_map @ down))
             why = (
-                f"it includes the {what} of the contacts, which stand apart; take them out"
+                f"it includes the {what} of the contacts, which stand apart: take them out"
                 if np.abs(resisted - theirs).max() <= nothing
-                else f"are {what} of the contacts, which stand apart, included, or is vertical not 0 for a rotation?"
+                else f"are {what} of the contacts, which stand apart, included, or is vertical 1 for a rotation?"
             )
             # Both may have one cause: it is asked for once.
             asked = any(why.partition("contacts")[2] in fault.message for fault in check.faults)
