@@ -1,6 +1,6 @@
 """A car on Belgian blocks at 30 km/h: a measured surface of 10 m, driven forth and back by an option that says so.
 
-`python examples/belgian_block.py [SURFACE]`; needs PyOpenCRG (`pip install 'movingfrf[io]'`). The surface is not
+`python examples/belgian_block.py [SURFACE]`; needs PyOpenCRG (`pip install PyOpenCRG`). The surface is not
 part of this repository: it is `belgian_block.crg` of ASAM OpenCRG (DaimlerChrysler 2005, Apache License 2.0).
 """
 

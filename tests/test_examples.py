@@ -1,7 +1,10 @@
 """Every example and the README's code run, and one number of each is what it was understood to be."""
 
 import importlib.util
+import inspect
 import re
+import sys
+import types
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +12,7 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.scenarios.reading import parse_scenario
+from movingfrf.scenarios.template import template
 
 ROOT = Path(__file__).parents[1]
 PAVED_ROAD = ROOT.parent / "shared" / "data" / "utia_profile.txt"
@@ -146,3 +150,39 @@ def test_belgian_block_example():
 def test_belgian_block_without_its_surface(tmp_path):
     with pytest.raises(ValueError, match=r"cannot read .*none\.crg: No such file"):
         loaded("belgian_block").told(tmp_path / "none.crg")
+
+
+PAGES = [file for file in sorted((ROOT / "docs").glob("*.md")) if "```python" in file.read_text(encoding="utf-8")]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_the_code_of_a_page_runs(page, tmp_path, monkeypatch):
+    """Block after block, as a reader would; `truck.toml` is what `movingfrf new` writes, as the page says."""
+    monkeypatch.chdir(tmp_path)
+    Path("truck.toml").write_text(template("scenario"), encoding="utf-8")
+    names = {"__name__": page.stem}
+    monkeypatch.setitem(sys.modules, page.stem, types.ModuleType(page.stem))  # where dataclasses look themselves up
+    for block in re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
+        exec(block, names)
+
+
+def test_calls_in_the_documentation_can_be_called():
+    """`Contact(position, stiffness)` in a text is a promise: without keywords stands what needs none."""
+    promised = 0
+    for file in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]:
+        for name, given in re.findall(r"`(?:mf\.)?(\w+)\(([^()`]*)\)`", file.read_text(encoding="utf-8")):
+            positional = [one for one in given.split(",") if one.strip() not in ("", "…") and "=" not in one]
+            if positional and name in mf.__all__:
+                promised += 1
+                parameters = inspect.signature(getattr(mf, name)).parameters.values()
+                free = [one for one in parameters if one.kind is not one.KEYWORD_ONLY]
+                several = any(one.kind is one.VAR_POSITIONAL for one in free)
+                assert several or len(positional) <= len(free), f"{file.name}: {name}({given})"
+    assert promised > 3
+
+
+def test_nothing_is_to_be_installed_from_where_it_is_not():
+    """What is told to be installed is there: packages of others, or this clone."""
+    texts = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "src").rglob("*.py")]
+    found = [file.name for file in texts if re.search(r"pip\s+install\s+'?movingfrf", file.read_text("utf-8"))]
+    assert found == []

@@ -234,7 +234,7 @@ def test_what_pyuff_hides(results, tmp_path, monkeypatch):
 
 def test_without_the_extra(results, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyuff", None)
-    with pytest.raises(ValueError, match=r"need pyuff: pip install 'movingfrf\[io\]'"):
+    with pytest.raises(ValueError, match=r"need pyuff: pip install pyuff, or the extra `io`"):
         mf.export(results["coupled"], tmp_path / "a.uff")
     assert not list(tmp_path.iterdir())
 

@@ -8,6 +8,7 @@ import pytest
 from movingfrf.commands.main import main
 from movingfrf.scenarios.kinds import TABLES
 from movingfrf.scenarios.template import template
+from tests.test_words import on_terminal
 
 TABLES_BY_NAME = {family.name: family for family in TABLES.values()}
 
@@ -57,3 +58,30 @@ def test_templates_say_how_to_list_kinds_and_list_none_themselves(name):
 def test_another_name_is_refused(capsys):
     assert main(["kinds", "half_kar"]) == 2
     assert "no table and no kind 'half_kar' (did you mean 'half_car'?)" in capsys.readouterr().err
+
+
+def wordless(key):
+    """Leave the unit out of what is said of a key."""
+    return re.sub(r"\s*\[[^\]]*\]", "", key.words)
+
+
+@pytest.mark.parametrize("family", TABLES.values(), ids=lambda family: family.name)
+def test_no_two_keys_of_a_kind_have_the_same_words(family):
+    """Read alone, "body_mass: sprung and unsprung mass" asks for the sum."""
+    for kind in family.kinds.values():
+        words = [wordless(key) for key in kind.keys]
+        assert len(set(words)) == len(words), [word for word in words if words.count(word) > 1]
+
+
+def test_what_a_file_holds_is_said_and_a_file_has_no_unit(capsys):
+    text = told(capsys, "vehicle_file")
+    assert "without the dashpots and springs of the contacts" in text
+    assert TABLES_BY_NAME["vehicle"].kinds["vehicle_file"].keys[0].unit == ""
+
+
+def test_keys_stand_out_where_their_words_are_wrapped(tmp_path):
+    lines = on_terminal(["kinds", "finite_track"], tmp_path)
+    begun = [line.split()[0].rstrip(":") for line in lines if re.match(r" {2}\S+( = .*| \(.*)?:", line)]
+    assert begun == [key.name for key in TABLES_BY_NAME["guideway"].kinds["finite_track"].keys]
+    assert any(line.startswith("    ") for line in lines)
+    assert all(len(line) <= 80 for line in lines)

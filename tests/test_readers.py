@@ -350,7 +350,7 @@ def test_modifiers_of_a_grid_are_named_and_not_applied(tmp_path):
 
 def test_without_the_library_the_message_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyopencrg", None)
-    with pytest.raises(ValueError, match=r"need PyOpenCRG: pip install 'movingfrf\[io\]'"):
+    with pytest.raises(ValueError, match=r"need PyOpenCRG: pip install PyOpenCRG, or the extra `io`"):
         mf.read_profile(written(tmp_path, "hand.crg", hand_made()))
 
 

@@ -405,7 +405,7 @@ TITLED = [
 
 @pytest.fixture
 def calamine():
-    return pytest.importorskip("python_calamine", reason="pip install 'movingfrf[io]'")
+    return pytest.importorskip("python_calamine", reason="pip install python-calamine")
 
 
 @pytest.mark.parametrize(("write", "ending"), [(xlsx, "xlsx"), (ods, "ods")])
@@ -469,5 +469,5 @@ def test_damaged_spreadsheets_are_refused(tmp_path, calamine):
 
 def test_without_the_library_the_message_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "python_calamine", None)
-    with pytest.raises(ValueError, match=r"need python-calamine: pip install 'movingfrf\[io\]'"):
+    with pytest.raises(ValueError, match=r"need python-calamine: pip install python-calamine, or the extra `io`"):
         mf.read_profile(xlsx(tmp_path / "road.xlsx", {"A": ROWS}))

@@ -37,7 +37,11 @@ SELECTION = [
     "tests/test_one_path.py",
     "tests/test_random_command.py",
     "tests/test_door.py",
+    "tests/test_matlab_vehicles.py",
 ]
+
+# These first where it lies in how files of arrays and texts are taken apart.
+FILES = ["tests/test_matlab_vehicles.py", "tests/test_toml_words.py"]
 
 # These first where the fault lies in files of profiles, what is done to them and what is said of them.
 PROFILES = [
@@ -61,7 +65,6 @@ ABOUT_PROFILES = (
     "metrics/profile",
     "reports/profile",
     "roughness/sentinels",
-    "_basics/matlab",
     "_basics/wording",
 )
 
@@ -122,6 +125,8 @@ def selection(fault: Fault | None) -> list[str]:
     if file.startswith(SAMPLED):
         return [*SAMPLING, *SELECTION, *REFERENCE]
     independent = file.startswith(("stepping/", "guideways/sampled", "guideways/record", "guideways/files"))
+    if file.startswith(("_basics/array_file", "_basics/matlab", "_basics/toml", "vehicles/files")):
+        return FILES + PROFILES + SELECTION
     if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE
     if file.startswith("scenarios/"):

@@ -108,6 +108,20 @@ FAULTS = [
     Fault("run-in off the road", "scenarios/stepped.py", "max(0.0, math.floor(behind", "max(0.0, math.ceil(behind"),
     Fault("no room to run in", "scenarios/stepped.py", "journey.start - run_in * journey.speed", "journey.start"),
     # Profiles from files.
+    Fault(
+        "sparse by rows",
+        "_basics/matlab_file.py",
+        "filled[rows[:used], np.repeat",
+        "filled.T[rows[:used], np.repeat",
+    ),
+    Fault(
+        "characters by columns", "_basics/matlab_file.py", "whole[row::rows]", "whole[row * len(whole) // rows :]"
+    ),
+    Fault("texts of structs unread", "_basics/matlab_file.py", "        found.texts[name] =", "        {}[name] ="),
+    Fault("first of several structs", "_basics/array_file.py", "if len(most) > 1:", "if len(most) > 9:"),
+    Fault("decimal comma by itself", "_basics/toml_file.py", "{1}.{2}", "{1}.{1}"),
+    Fault("line after the fault", "_basics/toml_file.py", "0, error.start) + 1", "0, error.start) + 2"),
+    Fault("keys and words alike", "commands/kinds.py", "hanging=4", "hanging=0"),
     Fault("rows for columns", "_basics/matlab_file.py", 'reshape(shape, order="F")', "reshape(shape)"),
     Fault("packed bombs let in", "_basics/matlab_file.py", "most or limit)", "most or 0)"),
     # What is left out, told apart, cut and refused.

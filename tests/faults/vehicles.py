@@ -10,6 +10,13 @@ FAULTS = [
     Fault("cams twice as far apart", "_basics/enveloping.py", "0.5 * cams", "1.0 * cams"),
     # Vehicle.
     Fault(
+        "tyres in the matrix not recognised",
+        "vehicles/vehicle.py",
+        "np.abs(resisted - theirs)",
+        "np.abs(resisted + theirs)",
+    ),
+    Fault("missing vertical not asked for", "vehicles/files.py", 'if "vertical" in arrays or', "if True or"),
+    Fault(
         "numbers stored as they came",
         "_basics/checks.py",
         "checks.values[field.name])",

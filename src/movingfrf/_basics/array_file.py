@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from movingfrf._basics import matlab_file, numpy_file
+from movingfrf._basics.checks import Checks
 from movingfrf._basics.output import write_whole
 
 
@@ -23,13 +24,31 @@ class Content:
         What the arrays make, with its article, for messages.
     largest : int
         What a file may weigh at most [bytes]; what it may unpack to, its reader says.
+    needed, others : collection of str
+        Names of the arrays that it must hold, and of what may stand beside them.
     texts : collection of str
         Names under which texts are read; others are met with an empty list in their place.
     """
 
     what: str
     largest: int
-    texts: Collection[str] = ()
+    needed: Collection[str]
+    others: Collection[str]
+    texts: Collection[str]
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        """Every name that it may hold."""
+        return (*self.needed, *self.others)
+
+    def check_names(self, check: Checks, arrays: Collection[str]) -> None:
+        """Refuse what is missing, and what is not known in one sentence."""
+        for name in self.needed:
+            if name not in arrays:
+                check.refuse(name, "is missing")
+        if unknown := [name for name in arrays if name not in self.known]:
+            them = "are not known: leave them out or rename them" if len(unknown) > 1 else "is not known"
+            check.refuse(", ".join(unknown), f"{them}; {self.what} consists of {', '.join(self.known)}")
 
 
 # Arrays by name.
@@ -111,10 +130,36 @@ def _read_mat(path: Path, content: Content) -> Arrays:
         raise ValueError(f"{path}: is a MATLAB 7.3 file; save it with -v7")
     try:
         found = matlab_file.arrays_and_texts(data)
-        numbers = {name: stored.load() for name, stored in found.numbers.items()}
-        return numbers | {name: load() if name in content.texts else [] for name, load in found.texts.items()}
+        inside = _within(found, content)
+        at = len(inside)
+        for name, words in found.unread.items():
+            if name[at:] in content.known and name not in found.texts and name.startswith(inside):
+                raise ValueError(f"holds as {name} {words}, which is not read")
+        loads = {name: stored.load for name, stored in (found.numbers | found.fields).items()}
+        texts = {name: load if name[at:] in content.texts else list for name, load in found.texts.items()}
+        own = {name[at:]: load for name, load in (loads | texts).items() if name.startswith(inside)}
+        return {name: load() for name, load in own.items() if name and "." not in name}
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
+
+
+def _within(found: matlab_file.Contents, content: Content) -> str:
+    """Find where the arrays are: in variables of their own, or in a struct, whose name is returned with a dot."""
+    named = {*found.numbers, *found.fields, *found.texts, *found.unread}
+    own = {name: {one for one in content.needed if f"{name}{one}" in named} for name in map(_struct, named)}
+    some = {name: len(there) for name, there in own.items() if there}
+    if "" in some or not some:
+        return ""
+    most = [name for name, count in some.items() if count == max(some.values())]
+    if len(most) > 1:
+        structs = ", ".join(sorted(name[:-1] for name in most))
+        raise ValueError(f"holds {content.what} in several structs, {structs}: save one of them")
+    return most[0]
+
+
+def _struct(name: str) -> str:
+    """Name the struct that a field belongs to, with its dot; nothing of a variable."""
+    return "".join(name.rpartition(".")[:2])
 
 
 def _read_npz(path: Path, content: Content) -> Arrays:

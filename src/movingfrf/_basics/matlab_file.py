@@ -51,6 +51,8 @@ class Level5:
     cell: int
     structs: tuple[int, ...]  # and objects, which are stored alike
     text: int
+    sparse: int
+    opaque: int  # it has its name where others have their size
     others: Mapping[int, str]  # what is not read, in words
     complex_flag: int  # beside the class
     # What names may not be in MATLAB, and how many letters they have at most.
@@ -69,12 +71,14 @@ LEVEL_5 = Level5(
     cell=1,
     structs=(2, 3),
     text=4,
+    sparse=5,
+    opaque=17,
     others={
         2: "a struct in very many others",
         3: "an object in very many others",
-        5: "a sparse matrix",
+        5: "a sparse matrix of complex numbers",
         16: "a function",
-        17: "an object such as a table; save its columns, or table2struct(…, 'ToScalar', true)",
+        17: "an object, as a table or strings; save its columns, table2struct(…, 'ToScalar', true), or cellstr(…)",
     },
     complex_flag=0x0800,
     reserved=frozenset(
@@ -108,6 +112,7 @@ class Contents(NamedTuple):
     numbers: dict[str, Stored]
     texts: dict[str, Callable[[], list[str]]]
     # Numbers in the fields of structs, `road.distance`; of several structs in one array, `road(2).distance`.
+    # Their texts stand among the others, under such names.
     fields: dict[str, Stored]
     unread: dict[str, str]  # what else there is, and what it is
 
@@ -171,14 +176,13 @@ def _sort_in(found: Contents, matrix: _Matrix, within: str, depth: int = 0) -> N
         return
     (flags,) = struct.unpack(f"{order}I", parts[0].data[:4])
     kind = flags & 0xFF
-    name = within or bytes(parts[2].data).decode("latin-1")
+    name = within or bytes(parts[1 if kind == LEVEL_5.opaque else 2].data).decode("latin-1")
     shape = tuple(np.frombuffer(parts[1].data, f"{order}i4").tolist()) if len(parts[1].data) % 4 == 0 else None
-    if kind in LEVEL_5.numeric and not flags & LEVEL_5.complex_flag and shape is not None:
-        stored = Stored(shape, partial(_numbers, matrix, shape, name))
+    if kind in (*LEVEL_5.numeric, LEVEL_5.sparse) and not flags & LEVEL_5.complex_flag and shape is not None:
+        stored = Stored(shape, partial(_sparse if kind == LEVEL_5.sparse else _numbers, matrix, shape, name))
         (found.fields if within else found.numbers)[name] = stored
     elif kind in (LEVEL_5.cell, LEVEL_5.text):
-        if not within:
-            found.texts[name] = partial(_texts, matrix, kind)
+        found.texts[name] = partial(_texts, matrix, kind, shape)
         if kind == LEVEL_5.cell:
             found.unread[name] = "a cell array"
     elif kind in LEVEL_5.structs and depth < LEVEL_5.deepest:
@@ -209,13 +213,15 @@ def _itself(data: bytes) -> bytes:
     return data
 
 
-def _texts(matrix: _Matrix, kind: int) -> list[str]:
-    """One text, or those in the cells of an array."""
+def _texts(matrix: _Matrix, kind: int, shape: tuple[int, ...] | None) -> list[str]:
+    """Texts in the rows of an array of characters, all of one length, or in the cells of an array."""
     order, parts = matrix.order, matrix.parts()[3:]
     if kind == LEVEL_5.text:
-        return [_decoded(part, order) for part in parts[:1]]
+        whole = "".join(_decoded(part, order) for part in parts[:1])
+        rows = shape[0] if shape and len(whole) == np.prod(shape, dtype=object) else 1
+        return [whole[row::rows].strip() for row in range(rows)]
     cells = [list(_elements(memoryview(part.data), order)) for part in parts if part.kind == LEVEL_5.matrix]
-    return [_decoded(cell[3], order) for cell in cells if len(cell) > 3]
+    return [_decoded(cell[3], order).strip() for cell in cells if len(cell) > 3]
 
 
 def _decoded(part: Element, order: str) -> str:
@@ -223,7 +229,7 @@ def _decoded(part: Element, order: str) -> str:
     encoding = {2: "latin-1", 16: "utf-8", 4: utf_16, 17: utf_16}.get(part.kind)
     if encoding is None:
         raise ValueError(f"is damaged: a text is stored as type {part.kind}")
-    return bytes(part.data).decode(encoding, "replace").strip()
+    return bytes(part.data).decode(encoding, "replace")
 
 
 def _elements(data: memoryview, order: str, *, partly: bool = False, most: int = 2**31) -> Iterator[Element]:
@@ -261,14 +267,37 @@ def _unpacked(element: Element, file_size: int, most: int = 0) -> bytes:
 
 
 def _numbers(matrix: _Matrix, shape: tuple[int, ...], name: str) -> FloatArray:
-    order, parts = matrix.order, matrix.parts(most=4)
-    kind = parts[3].kind if len(parts) == 4 else 0
-    if kind not in LEVEL_5.numbers:
+    (values,) = _listed(matrix, name, 1)
+    if len(shape) < 2 or min(shape) < 0 or np.prod(shape, dtype=object) != values.size:
+        raise ValueError(f"is damaged: the array {name!r} of shape {shape} has {values.nbytes} bytes")
+    return values.astype(float).reshape(shape, order="F")
+
+
+def _sparse(matrix: _Matrix, shape: tuple[int, ...], name: str) -> FloatArray:
+    """Fill a matrix from its columns: rows, where in them each column begins, and values."""
+    rows, begins, values = _listed(matrix, name, 3)
+    if len(shape) != 2 or min(shape) < 0 or 8 * np.prod(shape, dtype=object) > UNPACKING.least:
+        raise ValueError(f"has a sparse matrix {name!r} of shape {shape}, too large to be filled")
+    whole = rows.dtype.kind in "iu" and begins.dtype.kind in "iu" and begins.size == shape[1] + 1
+    rows, begins = (each.astype(np.int64) if whole else np.zeros(1, np.int64) for each in (rows, begins))
+    lengths, used = np.diff(begins), int(begins[-1])
+    sound = whole and not begins[0] and (lengths >= 0).all() and used <= min(rows.size, values.size)
+    if not sound or ((rows[:used] < 0) | (rows[:used] >= shape[0])).any():
+        raise ValueError(f"is damaged: the sparse matrix {name!r} of shape {shape} does not fit its entries")
+    filled = np.zeros(shape)
+    filled[rows[:used], np.repeat(np.arange(shape[1]), lengths)] = values[:used]
+    return filled
+
+
+def _listed(matrix: _Matrix, name: str, count: int) -> list[np.ndarray]:
+    """Numbers as they are stored, list by list."""
+    parts = matrix.parts(most=3 + count)[3:]
+    if len(parts) < count or any(part.kind not in LEVEL_5.numbers for part in parts):
         raise ValueError(f"is damaged: the array {name!r} has no numbers")
-    stored = np.dtype(f"{order}{LEVEL_5.numbers[kind]}")
-    if len(shape) < 2 or min(shape) < 0 or int(np.prod(shape, dtype=object)) * stored.itemsize != parts[3].size:
-        raise ValueError(f"is damaged: the array {name!r} of shape {shape} has {parts[3].size} bytes")
-    return np.frombuffer(parts[3].data, stored).astype(float).reshape(shape, order="F")
+    stored = [np.dtype(f"{matrix.order}{LEVEL_5.numbers[part.kind]}") for part in parts]
+    if any(part.size % kind.itemsize for part, kind in zip(parts, stored, strict=True)):
+        raise ValueError(f"is damaged: the array {name!r} has parts of numbers")
+    return [np.frombuffer(part.data, kind) for part, kind in zip(parts, stored, strict=True)]
 
 
 def recognised(head: bytes) -> bool:

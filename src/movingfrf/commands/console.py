@@ -42,29 +42,29 @@ LAYOUT = Layout()
 class _Worded(Console):
     """Console that breaks sentences between words; what is longer than a line, as a path may be, stays whole."""
 
-    def print(self, *objects: Any, **how: Any) -> None:
+    def print(self, *objects: Any, hanging: int = 0, **how: Any) -> None:
         """Print as rich does, but for the sentences that are to be wrapped softly."""
         if how.get("soft_wrap") and self.is_terminal:
-            objects = tuple(_wrapped(one, self.width) if isinstance(one, str) else one for one in objects)
+            objects = tuple(_wrapped(one, self.width, hanging) if isinstance(one, str) else one for one in objects)
         super().print(*objects, **how)
 
 
-def _wrapped(text: str, across: int) -> str:
-    """Break the lines of a text between words, a number and its unit together, and indent what follows alike."""
+def _wrapped(text: str, across: int, hanging: int = 0) -> str:
+    """Break the lines of a text between words, a number with its unit; what follows is indented alike or more."""
     lines = []
     for line in text.split("\n"):
         indent = re.match(r" *(- )?", line)
         lines += textwrap.wrap(
             re.sub(r"(?<=\d) (?=[A-Za-zµ%])|(?<=N) (?=s/)", "\u00a0", line),
             max(across, 1),
-            subsequent_indent=" " * len(indent[0] if indent else ""),
+            subsequent_indent=" " * max(len(indent[0] if indent else ""), hanging),
             break_long_words=False,
             break_on_hyphens=False,
         ) or [""]
     return "\n".join(lines).replace("\u00a0", " ")
 
 
-def plain_console() -> Console:
+def plain_console() -> _Worded:
     """Console that prints names as they are, whatever brackets or colons they hold."""
     console = _Worded(highlight=False, markup=False, emoji=False)
     if not console.is_terminal:

@@ -35,4 +35,4 @@ def kinds(name: str | None = None, /) -> None:
         console.print(f"  {kind.words}", soft_wrap=True)
         for key in kind.keys:
             default = "" if key.needed else " (optional)" if key.default is None else f" = {key.default!r}"
-            console.print(f"  {key.name}{default}: {key.words}", soft_wrap=True)
+            console.print(f"  {key.name}{default}: {key.words}", soft_wrap=True, hanging=4)

@@ -14,24 +14,28 @@ from movingfrf._basics.checks import ParameterError, checking
 from movingfrf._basics.door import mistaken
 from movingfrf.guideways.sampled import SampledGuideway
 
-# A file holds what a `SampledGuideway` is made of, under the same names; these are numbers, the others arrays.
-NUMBERS = ("time_step", "speed", "critical_speed", "stepped")
-
+# A file holds what a `SampledGuideway` is made of, under the same names.
 # Ten thousand samples at all 4,032 offsets of a train take 300 MiB [a convention].
-RECORD = Content(what="a sampled guideway", largest=2**30, texts=("remarks",))
+RECORD = Content(
+    what="a sampled guideway",
+    largest=2**30,
+    needed=("response", "time_step", "offsets", "speed"),
+    others=("across", "source_across", "critical_speed", "stepped", "remarks"),
+    texts=("remarks",),
+)
 
 
 def read_sampled_guideway(file: str | Path) -> SampledGuideway:
     """Read a guideway that is known by its moving impulse response: `.npz` (NumPy) or `.mat` (MATLAB).
 
-    The file holds the arrays `response` (time, offset) [m/(N s)] and `offsets` [m], the numbers `time_step` [s] and
-    `speed` [m/s], and where wanted `across` and `source_across` [m] and `critical_speed` [m/s],
-    `stepped` (1 if it is so) and `remarks` (texts, "code: message"), as for `SampledGuideway`.
+    A .mat file may hold all of it in the fields of one struct.
 
     Parameters
     ----------
     file : str or Path
-        The file.
+        The file. It holds the arrays `response` (time, offset) [m/(N s)] and `offsets` [m], the numbers `time_step`
+        [s] and `speed` [m/s], and where wanted `across` and `source_across` [m] and `critical_speed` [m/s],
+        `stepped` (1 if it is so) and `remarks` (texts, "code: message"), as for `SampledGuideway`.
 
     Returns
     -------
@@ -77,15 +81,10 @@ def write_sampled_guideway(guideway: SampledGuideway, file: str | Path) -> None:
 
 def _arguments(found: Mapping[str, Any]) -> dict[str, Any]:
     """Give arrays the shapes that they have in Python: MATLAB knows neither numbers nor arrays of one axis."""
+    numbers = ("time_step", "speed", "critical_speed", "stepped")
     with checking() as check:
-        known = {one.name: one for one in fields(SampledGuideway) if one.init}
-        for name in found:
-            if name not in known:
-                check.refuse(name, f"is not known; a sampled guideway consists of {', '.join(known)}")
-        for name in ("response", "time_step", "offsets", "speed"):
-            if name not in found:
-                check.refuse(name, "is missing")
-        for name in NUMBERS:
+        RECORD.check_names(check, found)
+        for name in numbers:
             if name in found and np.size(found[name]) != 1:
                 check.refuse(name, f"must be one number, got {np.size(found[name])}")
         remarks = [str(remark).partition(": ")[::2] for remark in np.ravel(found.get("remarks", []))]
@@ -93,7 +92,7 @@ def _arguments(found: Mapping[str, Any]) -> dict[str, Any]:
             check.refuse("remarks", 'must be texts of the form "code: message"')
     flat = {name: np.ravel(array) for name, array in found.items()}
     shaped = {
-        name: array if name == "response" else flat[name][0].item() if name in NUMBERS else flat[name]
+        name: array if name == "response" else flat[name][0].item() if name in numbers else flat[name]
         for name, array in found.items()
     }
     return shaped | {"remarks": remarks, "stepped": bool(shaped.get("stepped", False))}

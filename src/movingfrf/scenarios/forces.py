@@ -238,8 +238,10 @@ def random_sum(
     ----------
     rms : float
         Root mean square of the fluctuation [N].
-    lowest, highest : float
-        Band in which the frequencies lie, uniformly distributed [Hz].
+    lowest : float
+        Lower end of the band in which the frequencies lie, uniformly distributed [Hz].
+    highest : float
+        Upper end of the band in which the frequencies lie [Hz].
     count : int
         Number of sine waves, at most 100,000.
     seed : int

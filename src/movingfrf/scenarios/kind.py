@@ -66,8 +66,8 @@ class Key:
 
     @property
     def unit(self) -> str:
-        """Its unit; empty if it has none."""
-        found = re.search(r"\[([^\]]+)\]", self.words)
+        """Its unit; empty if it has none, as the name of a file, whatever stands in the file."""
+        found = None if self.is_file else re.search(r"\[([^\]]+)\]", self.words)
         return found[1] if found else ""
 
     @property

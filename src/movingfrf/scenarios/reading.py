@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from movingfrf._basics.checks import Fault, ParameterError, nearest, shown
+from movingfrf._basics.toml_file import tables_of, text_of
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.response.line import require_record
 from movingfrf.response.simulation import line_of
@@ -117,22 +117,18 @@ def parse_scenario(
 
 def _text(path: Path) -> str:
     try:
-        data = path.read_bytes()
-        # UTF-8; or UTF-16, which PowerShell makes of what is redirected.
-        return data.decode("utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig")
+        return text_of(path.read_bytes())
     except OSError as error:
         raise ScenarioError(str(path), [Fault("the file", f"cannot be read: {error.strerror or error}")]) from None
-    except UnicodeDecodeError:
-        raise ScenarioError(str(path), [Fault("the file", "is not a text file")]) from None
+    except ValueError as error:
+        raise ScenarioError(str(path), [Fault("the file", str(error))]) from None
 
 
 def _tables(text: str, source: str) -> dict[str, Any]:
     try:
-        return tomllib.loads(text)
-    except ValueError as error:  # TOML's own, or an integer of thousands of digits
-        raise ScenarioError(source, [Fault("the text", f"is not TOML: {error}")]) from None
-    except RecursionError:
-        raise ScenarioError(source, [Fault("the text", "is nested too deeply")]) from None
+        return tables_of(text)
+    except ValueError as error:
+        raise ScenarioError(source, [Fault("the text", str(error))]) from None
 
 
 class _Builder:
@@ -267,6 +263,10 @@ class _Builder:
         if key.is_file:
             if not isinstance(value, str) or "\0" in value:
                 self.faults.append(Fault(path, f"must be the name of a file, got {shown(value)}"))
+                return None
+            if re.search(r"[\x00-\x1f]", value):
+                why = """a backslash has a meaning in "…": write / in its place, or '…'"""
+                self.faults.append(Fault(path, f"must be the name of a file, got {shown(value)}; {why}"))
                 return None
             return self.folder / value
         return value

@@ -107,8 +107,10 @@ def finite_plate(
         An Euler–Bernoulli beam on springs or a shear layer: stiffness, mass and damping of the whole width.
     width : float
         Width [m].
-    first, last : float
-        Where the stretch begins and ends [m].
+    first : float
+        Where the stretch begins [m].
+    last : float
+        Where the stretch ends [m].
     element : float
         Length of an element along the road [m], at most: a whole number of them fills the stretch.
     across : int

@@ -126,8 +126,10 @@ def finite_track(
     ----------
     track : Track
         An Euler–Bernoulli beam on any foundation; layers of mass get unknowns of their own.
-    first, last : float
-        Where the stretch begins and ends [m].
+    first : float
+        Where the stretch begins [m].
+    last : float
+        Where the stretch ends [m].
     element : float
         Length of an element [m], at most: a whole number of them fills the stretch.
     ends : str or tuple of str

@@ -24,8 +24,10 @@ class Body:
     ----------
     mass : float
         Mass [kg].
-    pitch_inertia, roll_inertia : float, optional
-        Moments of inertia about the centre of mass [kg m²]; None: the body does not turn that way.
+    pitch_inertia : float, optional
+        Moment of inertia in pitch, about the centre of mass [kg m²]; None: the body does not pitch.
+    roll_inertia : float, optional
+        Moment of inertia in roll, about the centre of mass [kg m²]; None: the body does not roll.
     position : float
         Centre of mass ahead of the vehicle's reference point [m].
     across : float
@@ -90,8 +92,10 @@ class Suspension:
 
     Parameters
     ----------
-    upper, lower : str
-        Names of the bodies.
+    upper : str
+        Name of the body above.
+    lower : str
+        Name of the body below.
     stiffness : float
         Stiffness [N/m].
     damping : float
@@ -134,8 +138,10 @@ class Hinge:
 
     Parameters
     ----------
-    first, second : str
-        Names of the bodies. The second one gives up a degree of freedom: its bounce follows from the others.
+    first : str
+        Name of the body that keeps its degrees of freedom.
+    second : str
+        Name of the body that gives up a degree of freedom: its bounce follows from the others.
     position : float
         Place ahead of the vehicle's reference point [m].
     rolls : bool

@@ -22,14 +22,18 @@ def quarter_car(
 
     Parameters
     ----------
-    body_mass, wheel_mass : float
-        Sprung and unsprung mass [kg].
+    body_mass : float
+        Sprung mass, the wheel's share of the body [kg].
+    wheel_mass : float
+        Unsprung mass: wheel, hub and what moves along [kg].
     suspension_stiffness : float
-        Stiffness [N/m].
+        Stiffness of the suspension [N/m].
+    suspension_damping : float
+        Damping of the suspension [N s/m].
     tyre_stiffness : float or inf
-        Stiffness [N/m]; `inf` for a wheel that follows the road rigidly.
-    suspension_damping, tyre_damping : float
-        Damping [N s/m].
+        Stiffness of the tyre [N/m]; `inf` for a wheel that follows the road rigidly.
+    tyre_damping : float
+        Damping of the tyre [N s/m].
     footprint : float
         Length of the tyre's contact patch [m].
 
@@ -93,13 +97,15 @@ def half_car(
     pitch_inertia : float
         Moment of inertia of the sprung mass about its centre of mass [kg m²].
     wheel_masses : tuple of float
-        Unsprung masses [kg].
+        Unsprung mass per axle [kg].
     suspension_stiffness : tuple of float
-        Stiffness per axle [N/m].
+        Stiffness of the suspension per axle [N/m].
+    suspension_damping : tuple of float
+        Damping of the suspension per axle [N s/m].
     tyre_stiffness : tuple of float or inf
-        Stiffness per axle [N/m]; `inf` for wheels that follow the road rigidly.
-    suspension_damping, tyre_damping : tuple of float
-        Damping per axle [N s/m].
+        Stiffness of the tyres per axle [N/m]; `inf` for wheels that follow the road rigidly.
+    tyre_damping : tuple of float
+        Damping of the tyres per axle [N s/m].
     axles : tuple of float
         Positions ahead of the centre of mass [m]: (+a, −b).
     footprint : float
@@ -171,16 +177,20 @@ def full_car(
     ----------
     body_mass : float
         Sprung mass [kg].
-    pitch_inertia, roll_inertia : float
-        Moments of inertia of the sprung mass about its centre of mass [kg m²].
+    pitch_inertia : float
+        Moment of inertia of the sprung mass in pitch, about its centre of mass [kg m²].
+    roll_inertia : float
+        Moment of inertia of the sprung mass in roll, about its centre of mass [kg m²].
     wheel_masses : tuple of float
         Unsprung mass at one wheel [kg].
     suspension_stiffness : tuple of float
-        Stiffness at one wheel [N/m].
+        Stiffness of the suspension at one wheel [N/m].
+    suspension_damping : tuple of float
+        Damping of the suspension at one wheel [N s/m].
     tyre_stiffness : tuple of float or inf
-        Stiffness at one wheel [N/m]; `inf` for wheels that follow the road rigidly.
-    suspension_damping, tyre_damping : tuple of float
-        Damping at one wheel [N s/m].
+        Stiffness of the tyre at one wheel [N/m]; `inf` for wheels that follow the road rigidly.
+    tyre_damping : tuple of float
+        Damping of the tyre at one wheel [N s/m].
     axles : tuple of float
         Positions ahead of the centre of mass [m]: (+a, −b).
     sides : tuple of float

@@ -148,12 +148,16 @@ def seated(
         m ahead of the centre of mass and 0.4 m to the left of it, `{"bounce": 1, "pitch": 1.5, "roll": 0.4}`.
     driver_mass : float
         Mass of the driver that the seat carries [kg].
-    cushion_stiffness, cushion_damping : float
-        Under the driver [N/m, N s/m].
+    cushion_stiffness : float
+        Stiffness of the cushion under the driver [N/m].
+    cushion_damping : float
+        Damping of the cushion under the driver [N s/m].
     seat_mass : float
         Mass of the seat on its suspension [kg]; 0: the cushion rests on the floor.
-    seat_stiffness, seat_damping : float
-        Between seat and floor [N/m, N s/m].
+    seat_stiffness : float
+        Stiffness between seat and floor [N/m].
+    seat_damping : float
+        Damping between seat and floor [N s/m].
     name : str
         Before the names of the new degrees of freedom, for more than one seat.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from movingfrf._basics.array_file import Arrays, Content, read_arrays, write_arrays
-from movingfrf._basics.checks import Checks, ParameterError, checking, real_numbers
+from movingfrf._basics.checks import Checks, Fault, ParameterError, checking, real_numbers
+from movingfrf._basics.toml_file import tables_of, text_of
 from movingfrf.vehicles.contact import Contact
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
@@ -40,21 +40,24 @@ class VehicleArrays:
 ARRAYS = VehicleArrays()
 
 # A vehicle of a thousand degrees of freedom is not larger [a convention].
-VEHICLE = Content(what="a vehicle", largest=2**28, texts=ARRAYS.optional)
+VEHICLE = Content(
+    what="a vehicle", largest=2**28, needed=ARRAYS.required, others=ARRAYS.optional, texts=ARRAYS.optional
+)
 
 
 def read_vehicle(file: str | Path) -> Vehicle:
     """Read a vehicle from a file of matrices: `.mat` (MATLAB), `.npz` (NumPy) or `.toml`.
 
-    The file holds `mass`, `damping`, `stiffness` (dof, dof), `contact_map` (contact, dof), and per contact
-    `position` [m], `contact_stiffness` [N/m] (`inf`: rigid) and, where wanted, `contact_damping` [N s/m], `path`
-    (counted from 0), `across` [m], `footprint` [m], `cams` [m], `contact_name`.
-    Optional: `vertical` (dof), else 1 for every degree of freedom; `dof_names`, else `dof_1`, `dof_2` …
+    A .mat file may hold all of it in the fields of one struct, and matrices may be sparse there.
 
     Parameters
     ----------
     file : str or Path
-        The file.
+        The file. It holds `mass`, `damping`, `stiffness` (dof, dof), the latter two without the dashpots and
+        springs of the contacts, which stand apart: `contact_map` (contact, dof), and per contact `position` [m],
+        `contact_stiffness` [N/m] (`inf`: rigid) and, where wanted, `contact_damping` [N s/m], `path` (counted from
+        0), `across` [m], `footprint` [m], `cams` [m], `contact_name`. Optional: `vertical` (dof), 1 for a
+        translation and 0 for a rotation, else 1 for every degree of freedom; `dof_names`, else `dof_1`, `dof_2` …
 
     Returns
     -------
@@ -110,20 +113,16 @@ def write_vehicle(vehicle: Vehicle, file: str | Path) -> None:
 
 def _filled(arrays: Mapping[str, Any]) -> Vehicle:
     with checking() as check:
-        for name in ARRAYS.required:
-            if name not in arrays:
-                check.refuse(name, "is missing")
-        known = (*ARRAYS.required, *ARRAYS.optional)
-        for name in arrays:
-            if name not in known:
-                check.refuse(name, f"is not known; a vehicle consists of {', '.join(known)}")
+        VEHICLE.check_names(check, arrays)
     with checking() as check:
         matrices = {name: _table(check, name, arrays[name]) for name in ARRAYS.matrices}
-        contacts, dofs = matrices["contact_map"].shape
+        contacts, dofs = _row(check, "position", arrays["position"]).size, len(matrices["mass"])
+        if contacts == 1 and matrices["contact_map"].shape == (dofs, 1):
+            matrices["contact_map"] = matrices["contact_map"].T  # a column of MATLAB's
         columns = {
             name: _row(check, name, arrays[name], contacts)
             for name in (*ARRAYS.contact, *ARRAYS.contact_optional)
-            if name in arrays
+            if name in arrays and not check.faults
         }
         paths = columns.get("path", np.zeros(contacts))
         if not np.isfinite(paths).all() or (paths % 1).any():
@@ -138,7 +137,14 @@ def _filled(arrays: Mapping[str, Any]) -> Vehicle:
     for number in range(contacts):
         values: dict[str, Any] = {name: float(column[number]) for name, column in columns.items()}
         listed.append(Contact(**values | {"path": int(paths[number]), "name": called[number]}))
-    return Vehicle(**matrices, contacts=listed, vertical=vertical, dof_names=names)
+    try:
+        return Vehicle(**matrices, contacts=listed, vertical=vertical, dof_names=names)
+    except ParameterError as error:
+        if "vertical" in arrays or not any("times vertical" in fault.message for fault in error.faults):
+            raise
+        raise ParameterError(
+            [*error.faults, Fault("vertical", "is missing, so it is 1 throughout: a rotation needs a 0 there")]
+        ) from None
 
 
 def _field(name: str) -> str:
@@ -148,7 +154,7 @@ def _field(name: str) -> str:
 
 def _texts(check: Checks, name: str, value: Any) -> list[str]:
     """Texts of a list or an array."""
-    return list(check.listed(name, value.tolist() if isinstance(value, np.ndarray) else value, str))
+    return list(check.listed(name, value.ravel().tolist() if isinstance(value, np.ndarray) else value, str))
 
 
 def _table(check: Checks, name: str, value: Any) -> np.ndarray:
@@ -170,16 +176,16 @@ def _real(value: Any) -> np.ndarray:
     return real_numbers(value)
 
 
-def _row(check: Checks, name: str, value: Any, count: int) -> np.ndarray:
+def _row(check: Checks, name: str, value: Any, count: int | None = None) -> np.ndarray:
     """Numbers of a row or a column."""
     try:
         row = _real(value).ravel()
     except (TypeError, ValueError) as error:
         check.refuse(name, f"must be real numbers: {error}")
-        return np.ones(count)
-    if row.size != count:
+        return np.ones(count or 1)
+    if count is not None and row.size != count:
         check.refuse(name, f"must be {count} numbers, got {row.size}")
-        return np.ones(count)
+        return np.ones(count or 1)
     if np.isnan(row).any():
         check.refuse(name, "must be numbers throughout")
     return row
@@ -187,6 +193,6 @@ def _row(check: Checks, name: str, value: Any, count: int) -> np.ndarray:
 
 def _read_toml(path: Path, _: Content) -> Arrays:
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path}: is not TOML: {error}") from None
+        return tables_of(text_of(path.read_bytes()))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None

@@ -116,14 +116,18 @@ def bogie(
         Moment of inertia of the frame about its centre [kg m²].
     wheelset_mass : float
         Mass of one wheelset [kg].
-    primary_stiffness, primary_damping : float
-        Between one wheelset and the frame, both sides together [N/m, N s/m].
+    primary_stiffness : float
+        Stiffness between one wheelset and the frame, both sides together [N/m].
+    primary_damping : float
+        Damping between one wheelset and the frame, both sides together [N s/m].
     axle_spacing : float
         Distance between the wheelsets [m].
     body_mass : float
         Mass of the body above this bogie [kg]; 0: none.
-    secondary_stiffness, secondary_damping : float
-        Between frame and body, both sides together [N/m, N s/m].
+    secondary_stiffness : float
+        Stiffness between frame and body, both sides together [N/m].
+    secondary_damping : float
+        Damping between frame and body, both sides together [N s/m].
     contact_stiffness : float or inf
         Of one wheelset's contacts, both rails together [N/m]; `inf`: the wheels follow the rails.
     contact_damping : float
@@ -204,16 +208,28 @@ def carriage(
 
     Parameters
     ----------
-    body_mass, bogie_mass, wheelset_mass : float
-        Masses of body, one bogie frame and one wheelset [kg].
-    body_pitch_inertia, bogie_pitch_inertia : float
-        Moments of inertia about the centre of mass [kg m²].
-    primary_stiffness, primary_damping : float
-        Between one wheelset and its bogie [N/m, N s/m].
-    secondary_stiffness, secondary_damping : float
-        Between one bogie and the body [N/m, N s/m].
-    bogie_spacing, axle_spacing : float
-        Distance between bogie centres, and between the wheelsets of a bogie [m].
+    body_mass : float
+        Mass of the body, without bogies [kg].
+    bogie_mass : float
+        Mass of one bogie's frame, without wheelsets [kg].
+    wheelset_mass : float
+        Mass of one wheelset [kg].
+    body_pitch_inertia : float
+        Moment of inertia of the body about its centre of mass [kg m²].
+    bogie_pitch_inertia : float
+        Moment of inertia of one bogie's frame about its centre of mass [kg m²].
+    primary_stiffness : float
+        Stiffness between one wheelset and its bogie [N/m].
+    primary_damping : float
+        Damping between one wheelset and its bogie [N s/m].
+    secondary_stiffness : float
+        Stiffness between one bogie and the body [N/m].
+    secondary_damping : float
+        Damping between one bogie and the body [N s/m].
+    bogie_spacing : float
+        Distance between the centres of the bogies [m].
+    axle_spacing : float
+        Distance between the wheelsets of a bogie [m].
     contact_stiffness : float or inf
         Of one wheelset's contacts, both rails together [N/m]; `inf`: the wheels follow the rails.
     contact_damping : float

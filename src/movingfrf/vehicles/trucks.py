@@ -32,8 +32,10 @@ class Axle(_RunningGear):
         Stiffness [N/m].
     tyre_stiffness : float or inf
         Stiffness [N/m]; `inf` for tyres that follow the road rigidly.
-    suspension_damping, tyre_damping : float
-        Damping [N s/m].
+    suspension_damping : float
+        Damping of the suspension [N s/m].
+    tyre_damping : float
+        Damping of the tyres [N s/m].
     footprint : float
         Length of the tyres' contact patch [m].
 

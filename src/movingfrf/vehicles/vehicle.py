@@ -46,9 +46,14 @@ class Vehicle(Remembering, Value):
 
     Parameters
     ----------
-    mass, damping, stiffness : array_like, shape (dof, dof)
-        Symmetric matrices of the vehicle without its contact springs [kg, N s/m, N/m; rotations in rad].
-        Mass positive definite, damping and stiffness positive semidefinite.
+    mass : array_like, shape (dof, dof)
+        Mass matrix, symmetric and positive definite [kg; rotations in rad].
+    damping : array_like, shape (dof, dof)
+        Damping matrix of the vehicle without the dashpots of its contacts, symmetric and positive semidefinite
+        [N s/m; rotations in rad].
+    stiffness : array_like, shape (dof, dof)
+        Stiffness matrix of the vehicle without the springs of its contacts, symmetric and positive semidefinite
+        [N/m; rotations in rad].
     contact_map : array_like, shape (contact, dof)
         Displacement of the vehicle at each contact per degree of freedom [m/m or m/rad].
     contacts : sequence of Contact
@@ -297,11 +302,23 @@ def _check_free(check: Checks, vehicle: Vehicle) -> None:
         check.refuse(
             "contact_map", "times vertical must be 1: the vehicle moves down by one metre, and so do its contacts"
         )
-    for name, matrix in (("stiffness", stiffness), ("damping", damping)):
-        if not np.allclose(matrix @ down, 0.0, rtol=0, atol=1e-6 * np.abs(matrix).max(initial=0.0)):
-            check.refuse(
-                name, "times vertical must be 0: moving the vehicle down as a whole strains nothing within"
+    for name, matrix, what, at_contacts in (
+        ("stiffness", stiffness, "springs", vehicle.springs),
+        ("damping", damping, "dashpots", vehicle.dashpots),
+    ):
+        resisted, nothing = matrix @ down, 1e-6 * np.abs(matrix).max(initial=0.0)
+        if np.abs(resisted).max() > nothing:
+            # What the contacts add, if the file of another program has them in its matrices.
+            theirs = contact_map.T @ (np.where(np.isinf(at_contacts), 0.0, at_contacts) * (contact_map @ down))
+            why = (
+                f"it includes the {what} of the contacts, which stand apart: take them out"
+                if np.abs(resisted - theirs).max() <= nothing
+                else f"are {what} of the contacts, which stand apart, included, or is vertical 1 for a rotation?"
             )
+            # Both may have one cause: it is asked for once.
+            asked = any(why.partition("contacts")[2] in fault.message for fault in check.faults)
+            within = "times vertical must be 0: moving the vehicle down as a whole strains nothing within"
+            check.refuse(name, within if asked else f"{within}; {why}")
 
 
 def _check_held(check: Checks, vehicle: Vehicle) -> None:

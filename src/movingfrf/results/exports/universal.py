@@ -74,7 +74,7 @@ def made(result: xr.Dataset) -> bytes:
     try:
         import pyuff
     except ModuleNotFoundError:
-        raise ValueError("universal files need pyuff: pip install 'movingfrf[io]'") from None
+        raise ValueError("universal files need pyuff: pip install pyuff, or the extra `io`") from None
     x = result[axis_of(result)].values
     if x.size < 2:
         raise ValueError(f"a universal file needs at least two points of {axis_of(result)}, got {x.size}")

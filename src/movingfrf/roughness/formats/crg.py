@@ -88,7 +88,7 @@ def _library() -> Any:
     try:
         import pyopencrg
     except ImportError:
-        raise ValueError("OpenCRG files need PyOpenCRG: pip install 'movingfrf[io]'") from None
+        raise ValueError("OpenCRG files need PyOpenCRG: pip install PyOpenCRG, or the extra `io`") from None
     return pyopencrg
 
 

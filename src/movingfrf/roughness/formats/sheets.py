@@ -65,7 +65,9 @@ def _texts(path: Path) -> list[tuple[str, bytes]]:
     try:
         import python_calamine  # noqa: F401
     except ImportError:
-        raise ValueError("spreadsheets need python-calamine: pip install 'movingfrf[io]'") from None
+        raise ValueError(
+            "spreadsheets need python-calamine: pip install python-calamine, or the extra `io`"
+        ) from None
     size = path.stat().st_size
     if zipfile.is_zipfile(path):
         try:

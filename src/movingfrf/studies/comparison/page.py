@@ -165,7 +165,7 @@ def findings(comparison: Comparison) -> list[str]:
             + (
                 "the compiled loops take roads of beam elements without layers of mass only."
                 if numba_is_there()
-                else "numba is not installed (pip install movingfrf[fast])."
+                else "numba is not installed (pip install numba, or the extra `fast`)."
             )
         )
     for target in comparison.equal_error:
