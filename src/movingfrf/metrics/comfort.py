@@ -309,15 +309,15 @@ def vibration_dose(values: ArrayLike, time_step: float, *, since: float = 0.0) -
     return np.asarray((np.sum(felt**4, axis=0) * time_step) ** 0.25).reshape(shape[1:])
 
 
-def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk", since: float = 0.0) -> Comfort:
+def comfort(result: xr.Dataset, dof: str | int, *, weighting: str = "Wk", since: float = 0.0) -> Comfort:
     """Measure how a degree of freedom would feel to somebody who moves with it.
 
     Parameters
     ----------
     result : xarray.Dataset
         The coupled response of a vehicle, from `simulate`, `cdfm` or `sim`.
-    dof : str
-        Name of the degree of freedom.
+    dof : str or int
+        Name or number of the degree of freedom.
     weighting : str
         Name of the frequency weighting: `Wk` for vertical motion of a seat or floor, `We` for a rotation; see
         `weighting`.
@@ -354,9 +354,9 @@ def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk", since: float
         weighting = check.choice("weighting", weighting, WEIGHTINGS)
         result = check_coupled(check, result)
         if not check.faults:
-            dof = check.choice("dof", dof, map(str, result.dof.values))
+            number = check.one_of("dof", dof, result.dof.values.tolist())
     step = float(result.attrs["time_step"])
-    return vibration(result.acceleration.sel(dof=dof).values, step, weighting, since=since)
+    return vibration(result.acceleration.values[:, number], step, weighting, since=since)
 
 
 def whole_body_vibration(

@@ -346,6 +346,12 @@ def flaws(result: xr.Dataset, names: Iterable[str]) -> list[str]:
     return found
 
 
+def contact_names(result: xr.Dataset) -> list[str]:
+    """Names of the contacts; empty where they have none."""
+    named = "contact_name" in result.coords
+    return [str(name) for name in result.contact_name.values] if named else [""] * result.sizes["contact"]
+
+
 def speed_in_words(result: xr.Dataset) -> str:
     """Write the speed in both units."""
     # Unbreakable spaces: a number stays with its unit.
