@@ -417,3 +417,29 @@ def test_a_random_result_is_no_history():
     assert isinstance(RANDOM, xr.Dataset)
     with pytest.raises(ValueError, match="got a result of kind 'random'; `random_measures` measures it"):
         mf.dynamic_load_coefficient(RANDOM)
+
+
+# What one asks for first, shown.
+
+
+def test_vibrations_comfort_and_measures_are_shown_in_few_digits():
+    modes = mf.vehicle_modes(TRUCK)
+    assert repr(modes).splitlines()[1].split() == "1.637 Hz 3.57 % of critical pitch 93 %, bounce 5 %".split()
+    assert repr(modes[0]).splitlines()[1:3] == ["  frequency   1.637 Hz", "  damping     3.57 % of critical"]
+    felt = mf.comfort(RESULT, "bounce")
+    assert f"  rms           {felt.rms:.4g} m/s²: " in repr(felt)
+    assert "rad/s^1.75" in repr(mf.comfort(RESULT, "pitch", weighting="We"))
+    assert felt == mf.comfort(RESULT, 0)
+    found = mf.measures(RESULT)
+    lines = repr(found).splitlines()
+    assert lines[0].split() == ["of", "measure", "value", "unit", "by"]
+    assert len(lines) == len(found) + 1
+    assert isinstance(found, list)
+    assert found == [*found]
+    assert "weighted rms" in found._repr_html_()
+    assert found._repr_html_().count("<tr>") == len(lines)
+    many = copy.deepcopy(mf.assess(RESULT))
+    many.extend(many * 9)
+    assert repr(many).splitlines()[-1] == f"… {len(many) - many.most} more"
+    assert repr(many[:0]) == "[]"
+    assert repr(pickle.loads(pickle.dumps(found))) == repr(found)

@@ -14,7 +14,7 @@ from movingfrf.metrics.entry import History, Random, Table
 from movingfrf.metrics.fatigue import check_random
 from movingfrf.metrics.listed import TABLES, peak, rms
 from movingfrf.metrics.loads import after, check_coupled
-from movingfrf.results.labels import Measure, contact_names
+from movingfrf.results.labels import Measure, contact_names, listed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,14 +49,14 @@ def measures(result: xr.Dataset, *, since: float = 0.0) -> list[Measure]:
     """
     variables = getattr(result, "data_vars", ())
     if "force" in variables and "deflection" in variables:
-        return [
+        return listed(
             measure
             for point, deflection in zip(result.point.values, after(result, since).deflection.values.T, strict=True)
             for measure in (
                 Measure(f"deflection at {point:g} m", "rms", rms(deflection), "m"),
                 Measure(f"deflection at {point:g} m", "peak", peak(deflection), "m"),
             )
-        ]
+        )
     with checking() as check:
         result = check_coupled(check, result, "deflection", "static_deflection")
     history = History(whole=result, since=since)
@@ -175,9 +175,9 @@ def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[M
 
 def _everywhere(take: Callable[..., list[Measure]], **numbers: Iterable[int]) -> list[Measure]:
     """Take the measures of every table at the numbers of its places."""
-    return [
+    return listed(
         measure
         for table in TABLES
         for number in numbers.get(table.place, ())
         for measure in take(table, number=number)
-    ]
+    )
