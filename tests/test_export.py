@@ -137,7 +137,10 @@ def test_universal_file(results, kind, tmp_path):
             continue
         for column in variable.values.reshape(variable.shape[0], -1).T:
             read = next(sets)
-            assert read["ordinate_axis_lab"] == name[:20]
+            label = read["ordinate_axis_lab"]
+            assert name.replace("_density", "_PSD").replace("_", " ").startswith(label)
+            assert 0 < len(label) <= 20
+            assert name.replace("_", " ") in read["id1"]
             np.testing.assert_allclose(read["data"], column, rtol=1e-11)
             np.testing.assert_allclose(read["x"], result[axis].values, rtol=1e-5)
             assert read["func_type"] == {"coupled": 1, "coarse": 1, "loaded": 1, "random": 9}.get(kind, 4)

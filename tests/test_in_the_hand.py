@@ -229,7 +229,7 @@ MISTAKEN = {
     "and for an acceleration": (lambda: mf.running_rms(RESULT, 1e-3), "take a variable of it"),
     "a scenario for a result": (lambda: mf.measures(scenario(SCENARIO)), r"scenario.run\(\)"),
     "a file for a result": (lambda: mf.assess("result.nc"), "xarray.load_dataset"),
-    "a number for a name": (lambda: mf.comfort(RESULT, 0), "dof must be one of bounce, pitch"),
+    "a number too high": (lambda: mf.comfort(RESULT, 9), r"dof must be among 0 \(bounce\), 1 \(pitch\)"),
     "a history for a random result": (
         lambda: mf.spectral_fatigue("random.nc", "contact_force", slope=3.0),
         "from `random_response`, got 'random.nc'; `xarray",
@@ -386,13 +386,14 @@ def test_plots_take_their_arguments_in_one_order():
         for name, function in vars(plots).items()
         if inspect.isfunction(function)
         and function.__module__ == plots.__name__
+        and not name.startswith("_")
         and "ax" in inspect.signature(function).parameters
     ]
     page = (ROOT / "docs" / "plots.md").read_text(encoding="utf-8")
-    assert len(drawn) == 10
+    assert len(drawn) == 11
     for function in drawn:
         first, second, *others = inspect.signature(function).parameters.values()
-        assert (first.name, second.name) == ("result", "ax")
+        assert (first.name, second.name) == ("guideway" if function is plots.moving_frf else "result", "ax")
         assert {one.kind for one in others} <= {inspect.Parameter.KEYWORD_ONLY}
         row = next(line for line in page.splitlines() if line.startswith(f"| `{function.__name__}`"))
         assert all(f"`{one.name}`" in row for one in others)
@@ -406,13 +407,39 @@ def test_degrees_of_freedom_are_drawn_by_name_or_number():
     ax = Figure().subplots()
     by_name = plots.accelerations(RESULT, ax, dof="Pitch").lines[-1].get_ydata()
     np.testing.assert_array_equal(by_name, plots.accelerations(RESULT, ax, dof=1).lines[-1].get_ydata())
-    with pytest.raises(ValueError, match=r"drawn can be 0 \(bounce\), 1 \(pitch\).*, got 'roll'"):
+    with pytest.raises(ValueError, match=r"dof must be among 0 \(bounce\), 1 \(pitch\).*, got 'roll'"):
         plots.acceleration_spectrum(RESULT, ax, dof="roll")
-    with pytest.raises(ValueError, match=r"drawn can be .*got 5"):
+    with pytest.raises(ValueError, match=r"contacts must be among .*got 5"):
         plots.contact_forces(RESULT, ax, contacts=[5])
 
 
 def test_a_random_result_is_no_history():
     assert isinstance(RANDOM, xr.Dataset)
-    with pytest.raises(ValueError, match="got a Dataset; `simulate`, `cdfm`, `sim` and `duhamel` return such"):
+    with pytest.raises(ValueError, match="got a result of kind 'random'; `random_measures` measures it"):
         mf.dynamic_load_coefficient(RANDOM)
+
+
+# What one asks for first, shown.
+
+
+def test_vibrations_comfort_and_measures_are_shown_in_few_digits():
+    modes = mf.vehicle_modes(TRUCK)
+    assert repr(modes).splitlines()[1].split() == "1.637 Hz 3.57 % of critical pitch 93 %, bounce 5 %".split()
+    assert repr(modes[0]).splitlines()[1:3] == ["  frequency   1.637 Hz", "  damping     3.57 % of critical"]
+    felt = mf.comfort(RESULT, "bounce")
+    assert f"  rms           {felt.rms:.4g} m/s²: " in repr(felt)
+    assert "rad/s^1.75" in repr(mf.comfort(RESULT, "pitch", weighting="We"))
+    assert felt == mf.comfort(RESULT, 0)
+    found = mf.measures(RESULT)
+    lines = repr(found).splitlines()
+    assert lines[0].split() == ["of", "measure", "value", "unit", "by"]
+    assert len(lines) == len(found) + 1
+    assert isinstance(found, list)
+    assert found == [*found]
+    assert "weighted rms" in found._repr_html_()
+    assert found._repr_html_().count("<tr>") == len(lines)
+    many = copy.deepcopy(mf.assess(RESULT))
+    many.extend(many * 9)
+    assert repr(many).splitlines()[-1] == f"… {len(many) - many.most} more"
+    assert repr(many[:0]) == "[]"
+    assert repr(pickle.loads(pickle.dumps(found))) == repr(found)

@@ -132,8 +132,11 @@ def test_refusals(result, file, tmp_path, capsys):
         ([str(file), "--from", "-1"], "since must not be negative, got -1.0 s"),
         ([str(file), "--slope", "-3"], "slope must be positive, got -3.0\n"),
         ([str(file), "--output", "m.txt"], "m.txt: must end in .json or .csv"),
-        ([str(file), "--contact", "2"], "contacts must be among 0, 1, got 2"),
-        ([str(file), "--dof", "nose"], "dofs must be among bounce, pitch, front_wheel, rear_wheel, got 'nose'"),
+        ([str(file), "--contact", "2"], "contacts must be among 0 (front), 1 (rear), got 2"),
+        (
+            [str(file), "--dof", "nose"],
+            "dofs must be among 0 (bounce), 1 (pitch), 2 (front_wheel), 3 (rear_wheel), got 'nose'",
+        ),
     ):
         assert main(["measure", *arguments]) == 2
         assert message in capsys.readouterr().err
@@ -149,3 +152,17 @@ def test_the_example_of_the_documentation_runs(capsys):
     names = re.findall(r"`([a-z_]+)(?:\(…\)\.\w+)?`", "".join(re.findall(r"^\|.*\| (.*?) \|$", text, re.MULTILINE)))
     assert len(names) > 25
     assert [name for name in names if not hasattr(mf, name)] == []
+
+
+def test_contacts_and_degrees_of_freedom_by_name_or_number(result, file, tmp_path):
+    def measured(*options):
+        assert main(["measure", str(file), *options, "--output", str(tmp_path / "m.json")]) == 0
+        return json.loads((tmp_path / "m.json").read_text(encoding="utf-8"))["measures"]
+
+    assert measured("--contact", "Rear", "--dof", "BOUNCE") == measured("--contact", "1", "--dof", "0")
+    assert {one["quantity"].split()[1] for one in measured("--contact", "rear", "--dof", "pitch")[:-8]} == {"1"}
+    by = [
+        mf.assess(result, contacts=chosen, dofs=seat) for chosen, seat in ((1, 0), ("rear", "Bounce"), ([1], [0]))
+    ]
+    assert by[0] == by[1] == by[2]
+    assert mf.comfort(result, "Front Wheel") == mf.comfort(result, 2) == mf.comfort(result, "front_wheel")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import scipy.signal
@@ -175,9 +177,9 @@ def test_of_many_degrees_of_freedom_the_calm_ones_that_differ_are_drawn():
 
 
 def test_chosen_contacts_have_colours_of_their_own(result):
-    curves = _curves([f"c{n}" for n in range(16)], [6, 7, 8])
+    curves = _curves("contacts", [f"c{n}" for n in range(16)], [6, 7, 8])
     assert len({curve.colour for curve in curves}) == 3
-    usual = {curve.column: curve.colour for curve in _curves([f"c{n}" for n in range(16)], None)}
+    usual = {curve.column: curve.colour for curve in _curves("contacts", [f"c{n}" for n in range(16)], None)}
     assert curves[0].colour == usual[6]
 
 
@@ -186,3 +188,151 @@ def test_a_phase_is_drawn_where_the_amplitude_is():
     frf = np.exp(-2.0 * frequency)[:, None] * np.exp(-1j * frequency[:, None])
     phase = frf_phase(frequency, frf, [0.0], axes()).lines[0].get_ydata()
     assert np.isfinite(phase).tolist() == (np.exp(-2.0 * frequency) >= FRF_AXES.depth).tolist()
+
+
+ROAD = mf.track(mf.EulerBernoulliBeam(1.573e7, 711.9), mf.Spring(8e6, 3e4))
+TRUCK = mf.catalogue("half_truck")
+
+
+@pytest.fixture(scope="module")
+def others(result):
+    """One result of every other kind, and what else is handed over by mistake."""
+    drawn = {
+        "random": mf.random_response(ROAD, TRUCK, mf.IsoRoad.of_class("A", band=(0.01, 6.0)), speed=10.0),
+        "receptance": mf.receptance(ROAD, frequency=[1.0, 2.0]),
+        "transfer": mf.transfer(ROAD, TRUCK, speed=10.0, frequency=[1.0, 2.0]),
+        "loaded": mf.moving_loads(ROAD, [[1e5]] * 100, [0.0], speed=20.0, time_step=1e-3, observe=[0.0]),
+    }
+    return SimpleNamespace(**drawn, result=result, ax=axes())
+
+
+REFUSED = {
+    "a random road's": (lambda o: plots.contact_forces(o.random, o.ax), "`contact_force_spectra`, "),
+    "a receptance": (
+        lambda o: plots.contact_force_spectra(o.receptance, o.ax),
+        r"`plots\.moving_frf` draws",
+    ),
+    "a transfer function": (lambda o: plots.acceleration_spectrum(o.transfer, o.ax, dof=0), "xarray's way"),
+    "swapped": (
+        lambda o: plots.contact_forces(o.ax, o.result),
+        "ax must be.*order.*result must.*order is",
+    ),
+    "swapped with a road": (lambda o: plots.moving_frf(o.ax, ROAD, speeds=1.0), "order is guideway, axes"),
+    "a road for a result": (lambda o: plots.roughness(ROAD, o.ax), "a Track; `moving_frf` draws"),
+    "a figure": (
+        lambda o: plots.roughness(o.result, o.ax.figure),
+        r"`Figure\(\)\.subplots\(\)` makes one",
+    ),
+    "several axes": (
+        lambda o: plots.roughness(o.result, Figure().subplots(2)),
+        r"take one of them, as axes\[0\]",
+    ),
+    "no loads": (
+        lambda o: plots.prescribed_forces(o.result, o.ax),
+        "to prescribed loads, got a result of",
+    ),
+    "no vehicle": (
+        lambda o: plots.roughness_spectrum(o.loaded, o.ax),
+        "`prescribed_forces` and `deflections`",
+    ),
+    "beyond": (
+        lambda o: plots.contact_forces(o.result, o.ax, interval=(30, 40)),
+        r"interval must lie within the record, 0 s to 3\.999 s, got \(30, 40\) s",
+    ),
+    "backwards": (
+        lambda o: plots.deflections(o.result, o.ax, interval=(3, 1)),
+        r"later instant .*\(3, 1\)",
+    ),
+    "an instant": (
+        lambda o: plots.accelerations(o.result, o.ax, dof=0, interval=3.0),
+        "interval must be two",
+    ),
+    "no such contact": (lambda o: plots.contact_forces(o.result, o.ax, contacts=-1), "contacts .* got -1"),
+    "true": (lambda o: plots.contact_forces(o.result, o.ax, contacts=[True]), "contacts must .* got True"),
+    "no such name": (
+        lambda o: plots.contact_force_spectra(o.random, o.ax, contacts="reer"),
+        r"contacts must be among 0 \(front\), 1 \(rear\), got 'reer' \(did you mean 'rear'\?\)",
+    ),
+    "no such load": (lambda o: plots.prescribed_forces(o.loaded, o.ax, loads=1), "loads must be among 0"),
+    "a dimension less": (
+        lambda o: plots.contact_forces(o.result.isel(contact=0), o.ax),
+        r"must keep its dimension contact, as `result\.isel\(contact=\[0\]\)` does",
+    ),
+    "an instant alone": (
+        lambda o: plots.roughness(o.result.isel(time=[0]), o.ax),
+        "two instants at least",
+    ),
+    "no attributes": (
+        lambda o: plots.roughness(o.result.assign_attrs(kind="coupled").drop_attrs(), o.ax),
+        "must keep its attributes, speed among them",
+    ),
+    "gaps": (
+        lambda o: plots.deflections(o.result.where(ROAD is None), o.ax),
+        "has deflection nan at time 0 s",
+    ),
+    "text for speeds": (lambda o: plots.moving_frf(ROAD, o.ax, speeds="fast"), r"speeds must be .*\[m/s\]"),
+    "a table of speeds": (
+        lambda o: plots.moving_frf(ROAD, o.ax, speeds=[[1.0]]),
+        "speeds must be one number or",
+    ),
+    "frequencies in no order": (
+        lambda o: plots.moving_frf(ROAD, o.ax, speeds=1.0, frequency=[2.0, 1.0]),
+        "frequency must be two or more increasing",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_drawn_is_refused_with_what_to_do(others, name):
+    call, words = REFUSED[name]
+    with pytest.raises(ValueError, match=words):
+        call(others)
+
+
+def test_contacts_are_chosen_by_number_or_name_one_or_several(others):
+    known = others.random
+    by = [
+        plots.contact_force_spectra(known, axes(), contacts=chosen).lines for chosen in (1, "Rear", [1], ["rear"])
+    ]
+    for lines in by:
+        assert len(lines) == 1
+        np.testing.assert_array_equal(lines[0].get_ydata(), by[0][0].get_ydata())
+
+
+def test_spectra_of_a_random_road_are_its_own(others):
+    known = others.random
+    line = plots.contact_force_spectra(known, axes(), contacts=0).lines[0]
+    at = np.isin(known.frequency.values, line.get_xdata())
+    np.testing.assert_allclose(line.get_ydata(), np.sqrt(known.contact_force_density.values[at, 0]), rtol=1e-12)
+    line = plots.deflection_spectra(known, axes(), places=0).lines[0]
+    np.testing.assert_allclose(line.get_ydata()[0], 1e6 * np.sqrt(known.deflection_density.values[0, 0]))
+    line = plots.acceleration_spectrum(known, axes(), dof="BOUNCE").lines[0]
+    np.testing.assert_allclose(line.get_ydata()[0], known.acceleration_density.values[0, 0])
+    line = plots.roughness_spectrum(known, axes()).lines[0]
+    n = line.get_xdata()
+    np.testing.assert_allclose(line.get_ydata(), mf.IsoRoad.of_class("A").density(n), rtol=1e-9)
+
+
+def test_moving_frfs_over_speeds_and_points(others):
+    frequency = np.linspace(0.0, 60.0, 61)
+    ax = plots.moving_frf(ROAD, axes(), speeds=[0.0, 60.0], ahead=[0.0, -1.5], frequency=frequency)
+    assert [line.get_label() for line in ax.lines] == [
+        "0 m/s, under the load itself",
+        "0 m/s, 1.50 m behind",
+        "60 m/s, under the load itself",
+        "60 m/s, 1.50 m behind",
+    ]
+    known = 1e9 * np.abs(ROAD.moving_frf(np.array([-1.5]), 60.0, 2 * np.pi * frequency)[:, 0])
+    np.testing.assert_allclose(ax.lines[3].get_ydata(), known, rtol=1e-3)
+    assert len({(line.get_color(), line.get_linestyle()) for line in ax.lines}) == 4
+
+
+def test_moving_frfs_of_an_undamped_road_are_drawn_to_where_it_hardly_answers():
+    rail = mf.track(mf.EulerBernoulliBeam(6e6, 60.0), mf.Spring(1e8, 0.0))
+    line = plots.moving_frf(rail, axes(), speeds=40.0).lines[0]
+    f, amplitude = line.get_data()
+    assert np.isfinite(amplitude).all()
+    assert 150.0 < f[amplitude.argmax()] < 206.0  # √(k/m)/2π = 205 Hz at rest
+    assert amplitude[-1] == pytest.approx(0.1 * amplitude[0], rel=0.02)
+    still = plots.moving_frf(mf.RigidGuideway(), axes(), speeds=40.0).lines[0]
+    assert still.get_xdata()[-1] == 40.0

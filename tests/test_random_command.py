@@ -33,7 +33,7 @@ def test_three_files_that_say_the_same(tmp_path, capsys):
     assert main(command) == 0
     told = capsys.readouterr().out
     for words in (
-        "; one road under all wheels",
+        "Spectrum: ISO 8608 class A, 1.6e-05 m³ at 0.1 cycle/m, waviness 2, 0.01 to 6 cycle/m; one road under all",
         "contact 0 force",
         "coefficient",
         "bounce acceleration",
@@ -56,6 +56,7 @@ def test_three_files_that_say_the_same(tmp_path, capsys):
     with xr.open_dataset(named / "random.nc") as reopened:
         assert (reopened.contact_force_density.values == direct.contact_force_density.values).all()
         assert reopened.attrs["scenario"] == TEMPLATE
+        assert reopened.attrs["spectrum"] == str(made.case.road.spectrum)
     summary = json.loads((named / "summary.json").read_text(encoding="utf-8"))
     (rms,) = [m for m in summary["measures"] if m["quantity"] == "contact 1 force" and m["name"] == "rms"]
     assert rms["value"] == pytest.approx(direct.contact_force_rms.values[1], rel=1e-12)
@@ -121,6 +122,9 @@ def test_report():
     assert "Contacts 0 (front left) to 3 (rear right) would lift off the road up to" in page
     for name in ("static", "crossing rate", "dynamic load coefficient", "road stress factor", "weighted rms (Wk)"):
         assert name in page
+    lifted = [m for m in found if m.name == "share lifted off"]
+    assert [m.value for m in lifted] == (100 * result.lift_off_share.values).tolist()
+    assert {m.units for m in lifted} == {"%"}
     static = next(m for m in found if m.quantity == "contact 0 force" and m.name == "static")
     assert f"<td>{1e-3 * static.value:.2f}</td>" in page
     assert len(page) < 2e6

@@ -241,3 +241,11 @@ def test_a_truncation_that_was_not_stated_is_none(time_step):
     force = 1e5 * np.sin(np.pi * time / 2.0)[:, None] ** 2
     result = mf.moving_loads(ROAD, force, [0.0], speed=10.0, time_step=time_step)
     assert "every frequency of the record is kept" in render(result, guideway=ROAD)
+
+
+def test_a_distance_has_the_digits_that_check_shows(tmp_path):
+    road = mf.harmonic(amplitude=1e-3, wavelength=5.0, length=40.0, start=-5.0)
+    car = mf.catalogue("golden_car")
+    result = mf.simulate(mf.RigidGuideway(), car, road, speed=80 / 3.6, duration=1.0)
+    page = render(result, guideway=mf.RigidGuideway())
+    assert ">22.2222 m<" in page

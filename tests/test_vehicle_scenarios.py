@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -383,3 +384,16 @@ def test_a_train_is_described_in_short(tmp_path, capsys):
     assert "53 more" in told
     assert "(160 in all)" in told
     assert len(told.splitlines()) < 45
+
+
+def test_a_file_in_millimetres_is_noticed_on_its_own(tmp_path, capsys):
+    """`movingfrf vehicles` says of a file what `check` says of a scenario."""
+    truck = mf.catalogue("half_truck")
+    far = replace(truck, contacts=tuple(replace(one, position=1e3 * one.position) for one in truck.contacts))
+    mf.write_vehicle(far, tmp_path / "mm.mat")
+    mf.write_vehicle(truck, tmp_path / "m.mat")
+    assert main(["vehicles", str(tmp_path / "mm.mat")]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "- the vehicle's length from its first contact to its last is 4270 m, usual is 0.2 to 60 m" in told
+    assert main(["vehicles", str(tmp_path / "m.mat")]) == 0
+    assert "Findings" not in capsys.readouterr().out

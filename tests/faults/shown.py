@@ -152,5 +152,44 @@ FAULTS = [
     Fault("names alike in MATLAB", "results/exports/matlab.py", "while valid in found.values():", "while False:"),
     Fault("file replaced unasked", "results/export.py", "if file.exists() and not force:", "if False:"),
     Fault("complex numbers in CF", "results/labels.py", "return real and all(", "return all("),
+    # What is drawn and chosen, and how it is refused.
+    Fault("any kind drawn", "reports/plots.py", "if kind not in kinds:", "if kind is None:"),
+    Fault(
+        "interval beyond the record", "reports/plots.py", "elif last <= time[0] or first > time[-1]:", "elif False:"
+    ),
+    Fault("interval backwards", "reports/plots.py", "if first >= last:", "if False:"),
+    Fault(
+        "speed of the first curve",
+        "reports/frf.py",
+        "for row, speed in enumerate(speeds)",
+        "for row, speed in enumerate(speeds[:1] * len(speeds))",
+    ),
+    Fault(
+        "true for the first contact",
+        "_basics/checks.py",
+        "isinstance(value, int) and not isinstance(value, bool) and 0",
+        "isinstance(value, int) and 0",
+    ),
+    Fault(
+        "spectrum estimated where it is known",
+        "metrics/spectra.py",
+        "return result.frequency.values / speed, speed * density",
+        "return result.frequency.values, density",
+    ),
+    Fault("two neighbours as a range", "_basics/wording.py", "if len(words) == 2:", "if False:"),
+    Fault("truck as fast as a car", "scenarios/unusual.py", "if heaviest > USUAL.truck_axle:", "if False:"),
+    Fault("loose dampers in silence", "scenarios/unusual.py", "if share < least:", "if False:"),
+    Fault(
+        "share for per cent",
+        "metrics/listed.py",
+        '100 * of.value("lift_off_share", n)',
+        'of.value("lift_off_share", n)',
+    ),
+    Fault(
+        "half a word for a label",
+        "results/exports/universal.py",
+        'return textwrap.shorten(words, DATASET_58.label, placeholder="") or',
+        "return",
+    ),
     Fault("file without accelerations", "results/files.py", "if not label.optional]", "if label.optional]"),
 ]

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.door import beyond_limits, instead_of
 from movingfrf._basics.door import shown as shown
+from movingfrf._basics.wording import enumerated
 
 Kind = TypeVar("Kind")
 
@@ -214,6 +215,27 @@ class Checks:
         hint = nearest(value, known) if isinstance(value, str) else ""
         self.refuse(name, f"must be one of {', '.join(known)}, got {shown(value)}{hint}")
         return known[0]
+
+    def one_of(self, name: str, value: Any, names: Sequence[str]) -> int:
+        """Demand one of several things that have a number each, some a name too; returns its number."""
+        return self._numbers(name, plain(value), names)[0]
+
+    def some_of(self, name: str, value: Any, names: Sequence[str]) -> list[int]:
+        """Demand some of several things, or one; returns their numbers. A name stands for all that have it."""
+        value = plain(value)
+        each = value if hasattr(value, "__iter__") and not isinstance(value, str) else [value]
+        return [number for one in each for number in self._numbers(name, plain(one), names)]
+
+    def _numbers(self, name: str, value: Any, names: Sequence[str]) -> list[int]:
+        """Find the numbers of what is meant by one number or name; refuse what means nothing."""
+        if (found := spelt(value, filter(None, names))) is not None:
+            return [number for number, one in enumerate(names) if spelt(one, [found])]
+        if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < len(names):
+            return [value]
+        known = enumerated([f"{number} ({one})" if one else f"{number}" for number, one in enumerate(names)])
+        hint = nearest(value, filter(None, names)) if isinstance(value, str) else ""
+        self.refuse(name, f"must be among {known}, got {shown(value)}{hint}")
+        return [0]
 
     def array(self, name: str, value: ArrayLike, unit: str, shape: tuple[int | None, ...] | None) -> FloatArray:
         """Demand finite numbers in an array of the given shape (None: any, of a length too); returns a frozen copy.

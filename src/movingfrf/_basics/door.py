@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 class Wanted(NamedTuple):
     """What an argument must be, and by what was given instead, what to do.
 
-    What was given is named by its class or one that it is based on; by `.name` if it has such an attribute; by
-    `[Class]` if it is a list of these; by `text` if it is one, or the name of a file.
+    What was given is named by its class or one that it is based on; by its kind if it is a result; by `.name` if it
+    has such an attribute; by `[Class]` if it is a list of these; by `text` if it is one, or the name of a file.
     """
 
     words: str
@@ -33,6 +33,7 @@ def wanted_kinds() -> Mapping[str, Wanted]:
     }
     result = {
         "DataArray": "it is one variable of a result, and the whole Dataset is wanted",
+        "Axes": "the order is result, axes",
         "Scenario": "`scenario.run()` computes its result",
         "Profile": "`simulate` computes the response to a profile",
         "Vehicle": "`simulate` computes the response of a vehicle",
@@ -40,12 +41,16 @@ def wanted_kinds() -> Mapping[str, Wanted]:
         "[Dataset]": "take one result after the other",
         ".shape": "the Dataset that `simulate` returned is wanted, not its numbers alone",
     }
+    per_force = dict.fromkeys(
+        ("receptance", "mobility", "accelerance"), "`plots.moving_frf` draws what a guideway answers to a force"
+    )
     return {
         "guideway": Wanted(
             "have a moving FRF, as a track has",
             {
                 "FiniteGuideway": "a finite road is for cdfm, sim and newmark_loads, or struck with "
                 "moving_impulse_response",
+                "Axes": "the order is guideway, axes",
                 **endless,
             },
         ),
@@ -121,7 +126,38 @@ def wanted_kinds() -> Mapping[str, Wanted]:
         ),
         "coupled result": Wanted(
             "be the coupled response of a vehicle, with contact_force, static_load and acceleration",
-            {**result, "Dataset": "`simulate`, `cdfm`, `sim` and `duhamel` return such"},
+            {
+                **result,
+                "random": "`random_measures` measures it",
+                "loaded": "`measures` measures it",
+                **per_force,
+                "Dataset": "`simulate`, `cdfm`, `sim` and `duhamel` return such",
+            },
+        ),
+        "drawn result": Wanted(
+            "be a result that can be drawn so",
+            {
+                **result,
+                "coupled": "`contact_forces`, `deflections`, `accelerations` and `roughness` draw it",
+                "loaded": "`prescribed_forces` and `deflections` draw it",
+                "random": "`contact_force_spectra`, `deflection_spectra`, `acceleration_spectrum` and "
+                "`roughness_spectrum` draw it",
+                "transfer": "`abs(result.contact_force[:, 0, 0]).plot()` is xarray's way",
+                **per_force,
+                "Dataset": "`simulate`, `moving_loads` and `random_response` return such",
+                ".moving_frf": "`moving_frf` draws the moving FRFs of a guideway",
+            },
+        ),
+        "axes": Wanted(
+            "be Axes of matplotlib",
+            {
+                "Dataset": "the order is result, axes",
+                ".moving_frf": "the order is guideway, axes",
+                ".subplots": "`Figure().subplots()` makes one",
+                ".shape": "take one of them, as axes[0]",
+                "[Axes]": "take one of them, as axes[0]",
+                "NoneType": "`matplotlib.figure.Figure().subplots()` makes one",
+            },
         ),
         "random result": Wanted(
             "be the response to a random road, from `random_response`",
@@ -203,10 +239,18 @@ def given(value: object) -> str:
         return f"the class {value.__name__} itself: brackets make one of it"
     if value is None or isinstance(value, (str, int, float, complex)):
         return shown(value)
+    if kind := _kind(value):
+        return f"a result of kind {kind!r}"
     if isinstance(value, (list, tuple)) and not hasattr(value, "_fields"):
         return f"a {type(value).__name__} of {type(value[0]).__name__}" if value else shown(value)
     name = type(value).__name__
     return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
+
+
+def _kind(value: Any) -> str:
+    """Kind of a result, as its attributes say; empty of anything else."""
+    attrs = getattr(value, "attrs", None)
+    return str(attrs.get("kind", "")) if isinstance(attrs, dict) and hasattr(value, "data_vars") else ""
 
 
 def _names(value: Any) -> Iterator[str]:
@@ -214,4 +258,6 @@ def _names(value: Any) -> Iterator[str]:
         yield f"[{type(value[0]).__name__}]"
     if isinstance(value, (str, PurePath)):
         yield "text"
+    if kind := _kind(value):
+        yield kind
     yield from (one.__name__ for one in type(value).__mro__)

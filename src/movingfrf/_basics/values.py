@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import partial
 from hashlib import blake2b
 from html import escape
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+
+Kind = TypeVar("Kind")
 
 
 class Value:
@@ -54,6 +56,52 @@ class Value:
         """Tell what is shown: names and words, a pair a line; the fields, unless a class knows better."""
         assert is_dataclass(self)
         return [(field.name, brief(getattr(self, field.name))) for field in fields(self) if field.repr]
+
+
+class Listed(list[Kind]):
+    """A list that is shown as a table, a line an item.
+
+    Parameters
+    ----------
+    items : iterable
+        What it holds.
+    heads : sequence of str
+        Heads of the columns.
+    row : function
+        From an item to its words, one a column.
+    """
+
+    # Lines at most [20 to 200: what one looks through].
+    most = 60
+
+    def __init__(self, items: Iterable[Kind], heads: Sequence[str], row: Callable[[Kind], Sequence[str]]) -> None:
+        super().__init__(items)
+        self._heads, self._row = heads, row
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Take it apart for a copy or a file, with what its rows are made of."""
+        return type(self), (list(self), self._heads, self._row)
+
+    def __repr__(self) -> str:
+        """Show its table, numbers and words below their heads."""
+        if not self:
+            return "[]"
+        rows = [self._heads, *map(self._row, self[: self.most])]
+        across = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        lines = ["  ".join(map(str.ljust, row, across)).rstrip() for row in rows]
+        return "\n".join([*lines, *self._more()])
+
+    def _repr_html_(self) -> str:
+        """Show its table in a notebook."""
+        rows = [("th", self._heads), *(("td", self._row(item)) for item in self[: self.most])]
+        lines = [
+            "".join(f'<{tag} style="text-align:left">{escape(cell)}</{tag}>' for cell in cells)
+            for tag, cells in rows
+        ]
+        return f"<table><tr>{'</tr><tr>'.join(lines)}</tr></table>{''.join(self._more())}"
+
+    def _more(self) -> list[str]:
+        return [f"… {len(self) - self.most} more"] if len(self) > self.most else []
 
 
 def content(value: Any) -> Any:

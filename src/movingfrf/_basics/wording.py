@@ -114,7 +114,7 @@ def _positional(value: float, digits: int) -> str:
 
 def is_never(value: float, units: str) -> bool:
     """Tell whether a rate or a share is too small for its digits to mean anything."""
-    return units in ("1/s", "1") and 0 < value < NEVER
+    return units in ("1/s", "1", "%") and 0 < value < NEVER
 
 
 def count(number: int, singular: str, plural: str = "") -> str:
@@ -148,12 +148,16 @@ class Standing(NamedTuple):
         'contact 1 (rear)'
         >>> Standing([""] * 64).listed([0, 2, *range(9, 64)])
         'contacts 0, 2 and 9 to 63'
+        >>> Standing(["front", "rear"]).listed([0, 1])
+        'contacts 0 (front) and 1 (rear)'
         """
         words = [f"{number} ({self.names[number]})" if self.names[number] else f"{number}" for number in numbers]
         if len(words) == 1:
             return f"contact {words[0]}"
         # Neighbours have one difference between number and rank.
         runs = [list(run) for _, run in groupby(range(len(words)), lambda rank: numbers[rank] - rank)]
+        if len(words) == 2:
+            runs = [[0], [1]]
         groups = [words[run[0]] + (f" to {words[run[-1]]}" if run[1:] else "") for run in runs]
         if len(groups) > most:
             groups = [*groups[: most - 1], f"{sum(map(len, runs[most - 1 :]))} more"]

@@ -33,6 +33,10 @@ class Layout:
 
     piped: int = 160  # width of the output where there is no terminal [a convention]
     head: int = 12  # what a line of a head may take, even above shorter numbers [a convention]
+    # Blanks at which no line breaks: between a number and its unit, in powers of ten, in N s/m and in ISO 2631-1.
+    together: str = (
+        r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹∞]) (?=[A-Za-zµ%°×√])|(?<=×) (?=1)|(?<=N) (?=s/)|(?<=[A-Z][A-Z]) (?=[A-Z]?\d)"
+    )
     gap: int = 2  # between columns: one letter of rich's padding beside each of the two
 
 
@@ -45,17 +49,17 @@ class _Worded(Console):
     def print(self, *objects: Any, hanging: int = 0, **how: Any) -> None:
         """Print as rich does, but for the sentences that are to be wrapped softly."""
         if how.get("soft_wrap") and self.is_terminal:
-            objects = tuple(_wrapped(one, self.width, hanging) if isinstance(one, str) else one for one in objects)
+            objects = tuple(wrapped(one, self.width, hanging) if isinstance(one, str) else one for one in objects)
         super().print(*objects, **how)
 
 
-def _wrapped(text: str, across: int, hanging: int = 0) -> str:
+def wrapped(text: str, across: int, hanging: int = 0) -> str:
     """Break the lines of a text between words, a number with its unit; what follows is indented alike or more."""
     lines = []
     for line in text.split("\n"):
         indent = re.match(r" *(- )?", line)
         lines += textwrap.wrap(
-            re.sub(r"(?<=\d) (?=[A-Za-zµ%])|(?<=N) (?=s/)", "\u00a0", line),
+            re.sub(LAYOUT.together, "\u00a0", line),
             max(across, 1),
             subsequent_indent=" " * max(len(indent[0] if indent else ""), hanging),
             break_long_words=False,
@@ -207,7 +211,7 @@ def print_table(console: Console, table: Table) -> None:
     room = console.width - max((len(row.name) for row in table.rows), default=0) - LAYOUT.gap - 2
     rows = [
         [
-            (_wrapped(cell, room) if listed else cell) if column.words else _typed(cell)
+            (wrapped(cell, room) if listed else cell) if column.words else _typed(cell)
             for column, cell in zip(table.columns, row.cells, strict=True)
         ]
         if row.cells
@@ -261,7 +265,7 @@ def _pieces(
     for column, (head, cells) in enumerate(zip(heads, bodies, strict=True)):
         # Where room is short a head may take more lines than one, but no word of it breaks.
         widest = max([LAYOUT.head, *map(len, [*head.split(), *cells])])
-        lines = [head] if roomy else _wrapped(head, widest).split("\n")
+        lines = [head] if roomy else wrapped(head, widest).split("\n")
         width = LAYOUT.gap + max(map(len, [*lines, *cells]))
         if pieces[-1] and width > left:
             pieces.append({})

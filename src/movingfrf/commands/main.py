@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import sys
 from contextlib import suppress
 
@@ -70,7 +71,12 @@ def main(arguments: list[str] | None = None) -> int:
     if not said:
         return Status.DONE
     with suppress(OSError):
-        print(f"movingfrf: {said}", file=sys.stderr)
+        said = f"movingfrf: {said}"
+        if sys.stderr.isatty():
+            from movingfrf.commands.console import wrapped
+
+            said = wrapped(said, shutil.get_terminal_size().columns)
+        print(said, file=sys.stderr)
     return Status.REFUSED
 
 

@@ -95,6 +95,7 @@ def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Param
     from movingfrf._basics.wording import count
     from movingfrf.scenarios.description import described_vehicle
     from movingfrf.scenarios.reading import named_vehicle
+    from movingfrf.scenarios.unusual import unusual_vehicle
     from movingfrf.vehicles.catalogue import CATALOGUE
     from movingfrf.vehicles.files import write_vehicle
     from movingfrf.vehicles.vehicle import GRAVITY
@@ -123,6 +124,8 @@ def vehicles(name: str | None = None, /, *, output: Annotated[Path | None, Param
         console.print(f"{name}: {CATALOGUE[name].summary}\nsource: {CATALOGUE[name].source}", soft_wrap=True)
     for heading, lines in described_vehicle(vehicle):
         print_table(console, listing(heading, lines))
+    if remarks := unusual_vehicle(vehicle):
+        print_findings(console, remarks)
     if output is not None:
         write_vehicle(vehicle, output)
         console.print(f"wrote {output}", soft_wrap=True)
@@ -280,8 +283,8 @@ def measure(
     file: Path,
     /,
     *,
-    contact: list[int] | None = None,
-    dof: list[str] | None = None,
+    contact: list[int | str] | None = None,
+    dof: list[int | str] | None = None,
     weighting: str = "Wk",
     slope: float | None = None,
     since: Annotated[float, Parameter(name="--from")] = 0.0,
@@ -297,9 +300,9 @@ def measure(
     file
         The result.nc of a run.
     contact
-        Number of a contact; again for another. All by default.
+        Number or name of a contact; again for another. All by default.
     dof
-        Name of a degree of freedom, where people are; again for another. All by default.
+        Name or number of a degree of freedom, where people are; again for another. All by default.
     weighting
         Frequency weighting of translations: Wk (vertical), Wd (horizontal), Wb (rail), Wf (motion sickness), Wc,
         We, Wj. Rotations have We.

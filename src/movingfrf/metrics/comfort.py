@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.values import Value
+from movingfrf._basics.wording import number
 from movingfrf.metrics.loads import check_coupled, samples_before
 
 if TYPE_CHECKING:
@@ -86,7 +88,8 @@ WEIGHTINGS = {
 }
 
 
-class Comfort(NamedTuple):
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Comfort(Value):
     """Measures of one weighted acceleration; of a rotation in rad instead of m."""
 
     weighting: str
@@ -98,12 +101,33 @@ class Comfort(NamedTuple):
     bias: float = 0.0  # what was taken out of a recording: half-way through it [m/s²] …
     drift: float = 0.0  # … and its rise [m/s³]
 
+    def told(self) -> list[tuple[str, str]]:
+        """Tell the measures with their units, in few digits, and what the standard makes of them."""
+        rms = f"{number(self.rms)} {self._unit('/s²')}"
+        if self.rms and self._unit("") == "m" and self.weighting != "Wf":
+            rms += f": {', or '.join(self.reactions)}"
+        lines = [
+            ("weighting", f"{self.weighting}, {WEIGHTINGS[self.weighting].standard}"),
+            ("rms", rms),
+            ("peak", f"{number(self.peak)} {self._unit('/s²')}"),
+            ("crest factor", number(self.crest_factor)),
+            ("MTVV", f"{number(self.mtvv)} {self._unit('/s²')}"),
+            ("VDV", f"{number(self.vdv)} {self._unit('/s^1.75')}"),
+            ("duration", f"{self.duration:g} s"),
+        ]
+        if self.exceeded:
+            lines.append(("understated", f"by the rms alone, says {' and '.join(self.exceeded)}"))
+        return lines + ([("taken out", self.taken_out)] if self.taken_out else [])
+
+    def _unit(self, per: str) -> str:
+        return ("rad" if self.weighting == WEIGHTING_OF["rad"] else "m") + per
+
     @property
     def taken_out(self) -> str:
         """What was taken out of a recorded acceleration, in words; empty of a computed one."""
         if not (self.bias or self.drift):
             return ""
-        unit = "rad/s²" if self.weighting == WEIGHTING_OF["rad"] else "m/s²"
+        unit = self._unit("/s²")
         words = f"a bias of {self.bias:.3g} {unit} and a drift of {self.drift:.3g} {unit} per second were taken out"
         slowest = 1 / WEIGHTINGS[self.weighting].band[0]
         short = f"; in less than {slowest:.3g} s {self.weighting} cannot tell them from vibration"
@@ -309,15 +333,15 @@ def vibration_dose(values: ArrayLike, time_step: float, *, since: float = 0.0) -
     return np.asarray((np.sum(felt**4, axis=0) * time_step) ** 0.25).reshape(shape[1:])
 
 
-def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk", since: float = 0.0) -> Comfort:
+def comfort(result: xr.Dataset, dof: str | int, *, weighting: str = "Wk", since: float = 0.0) -> Comfort:
     """Measure how a degree of freedom would feel to somebody who moves with it.
 
     Parameters
     ----------
     result : xarray.Dataset
         The coupled response of a vehicle, from `simulate`, `cdfm` or `sim`.
-    dof : str
-        Name of the degree of freedom.
+    dof : str or int
+        Name or number of the degree of freedom.
     weighting : str
         Name of the frequency weighting: `Wk` for vertical motion of a seat or floor, `We` for a rotation; see
         `weighting`.
@@ -354,9 +378,9 @@ def comfort(result: xr.Dataset, dof: str, *, weighting: str = "Wk", since: float
         weighting = check.choice("weighting", weighting, WEIGHTINGS)
         result = check_coupled(check, result)
         if not check.faults:
-            dof = check.choice("dof", dof, map(str, result.dof.values))
+            number = check.one_of("dof", dof, result.dof.values.tolist())
     step = float(result.attrs["time_step"])
-    return vibration(result.acceleration.sel(dof=dof).values, step, weighting, since=since)
+    return vibration(result.acceleration.values[:, number], step, weighting, since=since)
 
 
 def whole_body_vibration(
@@ -409,7 +433,7 @@ def whole_body_vibration(
             check.refuse("acceleration", f"must hold at least three samples [m/s²], got {history.size}")
     left, bias, drift = _without_line(history, time_step)
     found = vibration(left, time_step, weighting, since=since)
-    return found._replace(bias=float(bias), drift=float(drift))
+    return replace(found, bias=float(bias), drift=float(drift))
 
 
 def vibration(acceleration: FloatArray, time_step: float, weighting: str, *, since: float) -> Comfort:

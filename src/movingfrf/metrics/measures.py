@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from movingfrf._basics.checks import Checks, checking
+from movingfrf._basics.checks import checking
 from movingfrf.metrics.comfort import WEIGHTINGS
 from movingfrf.metrics.entry import History, Random, Table
 from movingfrf.metrics.fatigue import check_random
 from movingfrf.metrics.listed import TABLES, peak, rms
 from movingfrf.metrics.loads import after, check_coupled
-from movingfrf.results.labels import Measure
+from movingfrf.results.labels import Measure, contact_names, listed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,14 +49,14 @@ def measures(result: xr.Dataset, *, since: float = 0.0) -> list[Measure]:
     """
     variables = getattr(result, "data_vars", ())
     if "force" in variables and "deflection" in variables:
-        return [
+        return listed(
             measure
             for point, deflection in zip(result.point.values, after(result, since).deflection.values.T, strict=True)
             for measure in (
                 Measure(f"deflection at {point:g} m", "rms", rms(deflection), "m"),
                 Measure(f"deflection at {point:g} m", "peak", peak(deflection), "m"),
             )
-        ]
+        )
     with checking() as check:
         result = check_coupled(check, result, "deflection", "static_deflection")
     history = History(whole=result, since=since)
@@ -70,8 +70,8 @@ def measures(result: xr.Dataset, *, since: float = 0.0) -> list[Measure]:
 def assess(
     result: xr.Dataset,
     *,
-    contacts: Sequence[int] | None = None,
-    dofs: Sequence[str] | None = None,
+    contacts: Sequence[int | str] | int | str | None = None,
+    dofs: Sequence[int | str] | int | str | None = None,
     weighting: str = "Wk",
     slope: float | None = None,
     since: float = 0.0,
@@ -82,11 +82,11 @@ def assess(
     ----------
     result : xarray.Dataset
         The coupled response of a vehicle, from `simulate`, `cdfm`, `sim` or `duhamel`.
-    contacts : sequence of int, optional
-        Numbers of the contacts; all by default.
-    dofs : sequence of str, optional
-        Names of the degrees of freedom, those where people are: what ISO 2631-1 makes of them is then noted. All
-        by default, without such notes.
+    contacts : sequence of int or str, optional
+        Numbers or names of the contacts, or one; all by default.
+    dofs : sequence of str or int, optional
+        Names or numbers of the degrees of freedom, those where people are, or one: what ISO 2631-1 makes of them is
+        then noted. All by default, without such notes.
     weighting : str
         Frequency weighting of translations; rotations have We.
     slope : float, optional
@@ -123,25 +123,20 @@ def assess(
     with checking() as check:
         result = check_coupled(check, result, "deflection", "static_deflection")
         if not check.faults:
-            _check_chosen(check, "contacts", contacts, list(range(result.sizes["contact"])))
-            _check_chosen(check, "dofs", dofs, result.dof.values.tolist())
+            called = contact_names(result)
+            at_contacts = range(len(called)) if contacts is None else check.some_of("contacts", contacts, called)
+            names = result.dof.values.tolist()
+            at_dofs = range(len(names)) if dofs is None else check.some_of("dofs", dofs, names)
         weighting = check.choice("weighting", weighting, WEIGHTINGS)
         if slope is not None:
             slope = check.positive("slope", slope, "1")
-    names = result.dof.values.tolist()
     history = History(whole=result, weighting=weighting, slope=slope, since=since, judged=dofs is not None)
     return _everywhere(
         partial(Table.of_history, history=history),
-        contact=range(result.sizes["contact"]) if contacts is None else contacts,
+        contact=at_contacts,
         path=range(np.unique(result.path.values).size) if contacts is None else (),
-        dof=[names.index(dof) for dof in (names if dofs is None else dofs)],
+        dof=at_dofs,
     )
-
-
-def _check_chosen(check: Checks, name: str, chosen: Sequence[object] | None, there: list[object]) -> None:
-    for each in chosen or ():
-        if each not in there:
-            check.refuse(name, f"must be among {', '.join(map(str, there))}, got {each!r}")
 
 
 def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[Measure]:
@@ -180,9 +175,9 @@ def random_measures(result: xr.Dataset, *, slope: float | None = None) -> list[M
 
 def _everywhere(take: Callable[..., list[Measure]], **numbers: Iterable[int]) -> list[Measure]:
     """Take the measures of every table at the numbers of its places."""
-    return [
+    return listed(
         measure
         for table in TABLES
         for number in numbers.get(table.place, ())
         for measure in take(table, number=number)
-    ]
+    )

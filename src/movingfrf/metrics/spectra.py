@@ -9,7 +9,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import BoolArray, FloatArray
 from movingfrf._basics.welch import ESTIMATE, Spectra, cross_spectra, welch
-from movingfrf.results.labels import time_step_of
+from movingfrf.results.labels import kind_of, time_step_of
 from movingfrf.roughness.straight import straight
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def elevation_spectrum(result: xr.Dataset, contact: int) -> tuple[FloatArray, Fl
     Parameters
     ----------
     result : xarray.Dataset
-        What `simulate` returned.
+        What `simulate` returned, or `random_response`, where the spectrum is known.
     contact : int
         Number of the contact.
 
@@ -70,6 +70,9 @@ def elevation_spectrum(result: xr.Dataset, contact: int) -> tuple[FloatArray, Fl
     density : ndarray
         Spectral density [m³].
     """
+    if kind_of(result) == "random":
+        speed, density = result.attrs["speed"], result.roughness_density.values[:, contact]
+        return result.frequency.values / speed, speed * density
     elevation = result.roughness.values[:, contact]
     step = result.attrs["speed"] * time_step_of(result)
     few = len(elevation) < ESTIMATE.fewest_samples

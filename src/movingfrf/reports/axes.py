@@ -11,7 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.welch import spectral_density
 from movingfrf.reports.curves import GREY, INK, Curve, distinct
-from movingfrf.results.labels import resolved, time_step_of
+from movingfrf.results.labels import kind_of, resolved, time_step_of
 from movingfrf.roughness.fitting import IsoFit
 from movingfrf.roughness.spectra.iso import CLASS_CENTRES, IsoRoad
 
@@ -167,19 +167,12 @@ def draw_densities(
     scale: float = 1.0,
 ) -> None:
     """Draw spectral densities of the columns of a variable, as it was solved, as amplitudes or as powers."""
-    result = resolved(result)
-    time_step, values = time_step_of(result), result[name].values
-    truncation = float(result.attrs.get("truncation", 0.0))
-    if truncation > 0.499 / time_step:  # nothing is left out, and there is nothing to mark
-        truncation = 0.0
-    found = [(c, *spectral_density(values[:, c.column], time_step)) for c in distinct(curves, values)]
-    found = [(curve, frequency, density) for curve, frequency, density in found if frequency.size]
+    found, truncation, end = _densities(result, name, curves)
     ax.set_xlabel("frequency [Hz]")
     if not found:
         note(ax, "nothing varies, or the record is too short for a spectrum")
-        ax.set(xlim=(0, 0.5 / time_step), yticks=())
+        ax.set(xlim=(0, end), yticks=())
         return
-    end = max(upper_end(frequency, density) for _, frequency, density in found)
     extremes = []
     for curve, frequency, density in found:
         drawn = (frequency <= end) & (density > 0)
@@ -194,6 +187,26 @@ def draw_densities(
     mark_truncation(ax, truncation)
 
 
+def _densities(
+    result: xr.Dataset, name: str, curves: Sequence[Curve]
+) -> tuple[list[tuple[Curve, FloatArray, FloatArray]], float, float]:
+    """Find spectral densities, estimated of a history or known of a random road; truncation and last frequency."""
+    if kind_of(result) == "random":
+        frequency, known = result.frequency.values, result[f"{name}_density"].values
+        drawn = [curve for curve in distinct(curves, known) if known[1:, curve.column].any()]
+        ends = [upper_end(frequency, known[:, curve.column] * result.bandwidth.values) for curve in drawn]
+        found = [(curve, frequency, known[:, curve.column]) for curve in drawn]
+        return found, 0.0, max(ends, default=float(frequency[-1]))
+    result = resolved(result)
+    time_step, values = time_step_of(result), result[name].values
+    truncation, nyquist = float(result.attrs.get("truncation", 0.0)), 0.5 / time_step
+    found = [(c, *spectral_density(values[:, c.column], time_step)) for c in distinct(curves, values)]
+    found = [one for one in found if one[1].size]
+    end = max((upper_end(frequency, density) for _, frequency, density in found), default=nyquist)
+    # Beside the Nyquist frequency nothing is left out, and there is nothing to mark.
+    return found, truncation if truncation < 0.998 * nyquist else 0.0, end
+
+
 def upper_end(frequency: FloatArray, density: FloatArray) -> float:
     """Find the upper end of a frequency axis that shows nearly all of the variance.
 
@@ -202,7 +215,7 @@ def upper_end(frequency: FloatArray, density: FloatArray) -> float:
     frequency : ndarray
         Frequency [Hz].
     density : ndarray
-        Spectral density [unit²/Hz].
+        Spectral density [unit²/Hz], or variances of bands that are not equally wide.
 
     Returns
     -------

@@ -242,7 +242,8 @@ def _force_spectra_figure(result: xr.Dataset) -> Illustration:
     caption = (
         "Amplitude spectral densities of the dynamic contact forces (one-sided; their squares integrate to the "
         "variance). The lowest humps are, as a rule, the body on its suspension, higher ones the wheels on their "
-        "tyres. The frequency axis covers 99.99 % of the variance."
+        "tyres. The frequency axis covers 99.99 % of the variance. Where curves drop straight down, the road's "
+        "content ends: at its shortest wave, at this speed."
     )
     caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")
     return illustrated("force-spectra", "Contact-force spectra", caption, figure)

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import shown, spelt
+from movingfrf._basics.checks import checking
 from movingfrf._basics.wording import evenly_spread, some_of
+from movingfrf.results.labels import contact_names
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,6 +20,10 @@ if TYPE_CHECKING:
 # Okabe and Ito's palette, distinct under every common colour blindness; its yellow is too pale on white.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 INK, GREY = "#222222", "#6b6b6b"
+
+
+# Things by their numbers or names, or one of them.
+Chosen = Sequence[int | str] | int | str
 
 
 class Curve(NamedTuple):
@@ -106,15 +111,16 @@ def distinct(curves: Sequence[Curve], values: FloatArray, *, coincident: float =
     ]
 
 
-def contact_curves(result: xr.Dataset, contacts: Sequence[int] | None = None) -> list[Curve]:
+def contact_curves(result: xr.Dataset, contacts: Chosen | None = None) -> list[Curve]:
     """Name and colour of contacts, the same in every figure.
 
     Parameters
     ----------
     result : xarray.Dataset
         What `simulate` returned.
-    contacts : sequence of int, optional
-        Numbers of the contacts; by default all, or some of them where there are many (see `evenly_spread`).
+    contacts : sequence of int or str, optional
+        Numbers or names of the contacts, or one; by default all, or some of them where there are many (see
+        `evenly_spread`).
 
     Returns
     -------
@@ -123,7 +129,7 @@ def contact_curves(result: xr.Dataset, contacts: Sequence[int] | None = None) ->
     """
     position, path = result.position.values, result.path.values
     several_paths = len(np.unique(path)) > 1
-    called = result.contact_name.values.tolist() if "contact_name" in result.coords else [""] * len(path)
+    called = contact_names(result)
     names = [
         f"contact {number}"
         + (f" ({called[number]})" if called[number] else "")
@@ -131,10 +137,10 @@ def contact_curves(result: xr.Dataset, contacts: Sequence[int] | None = None) ->
         + (f", path {path[number]}" if several_paths else "")
         for number, place in enumerate(position)
     ]
-    return _curves(names, contacts)
+    return _curves("contacts", names, contacts, called)
 
 
-def point_curves(result: xr.Dataset, points: Sequence[int] | None = None) -> list[Curve]:
+def point_curves(result: xr.Dataset, points: Chosen | None = None) -> list[Curve]:
     """Name and colour of the observation points of a result of `moving_loads`.
 
     Parameters
@@ -149,10 +155,10 @@ def point_curves(result: xr.Dataset, points: Sequence[int] | None = None) -> lis
     list of Curve
         One per point.
     """
-    return _curves([f"point at {_signed(place)} m" for place in result.point.values], points)
+    return _curves("places", [f"point at {_signed(place)} m" for place in result.point.values], points)
 
 
-def load_curves(result: xr.Dataset, loads: Sequence[int] | None = None) -> list[Curve]:
+def load_curves(result: xr.Dataset, loads: Chosen | None = None) -> list[Curve]:
     """Name and colour of the loads of a result of `moving_loads`.
 
     Parameters
@@ -167,7 +173,7 @@ def load_curves(result: xr.Dataset, loads: Sequence[int] | None = None) -> list[
     list of Curve
         One per load.
     """
-    return _curves([f"load at {_signed(place)} m" for place in result["load"].values], loads)
+    return _curves("loads", [f"load at {_signed(place)} m" for place in result["load"].values], loads)
 
 
 def foremost(result: xr.Dataset) -> list[int]:
@@ -196,17 +202,20 @@ def _signed(place: float) -> str:
     return f"{place:+.2f}".replace("-", "−") if abs(place) >= 0.005 else "0"
 
 
-def _curves(names: Sequence[str], chosen: Sequence[int] | None) -> list[Curve]:
+def _curves(what: str, names: Sequence[str], chosen: Chosen | None, called: Sequence[str] = ()) -> list[Curve]:
     """Curves of the chosen columns; a column keeps its colour whatever else is chosen."""
     usual = evenly_spread(len(names))
     colours = {column: PALETTE[rank] for rank, column in enumerate(usual)}
-    columns = usual if chosen is None else [_column(one, names) for one in chosen]
+    columns = usual
+    if chosen is not None:
+        with checking() as check:
+            columns = check.some_of(what, chosen, called or names)
     taken = {colours[column] for column in columns if column in colours}
     free = itertools.cycle([colour for colour in PALETTE if colour not in taken] or PALETTE)
     return [Curve(c, names[c], colours[c] if c in colours else next(free)) for c in columns]
 
 
-def place_curves(result: xr.Dataset, places: Sequence[int] | None) -> list[Curve]:
+def place_curves(result: xr.Dataset, places: Chosen | None) -> list[Curve]:
     """Name and colour of the places of a result: its contacts, or its observation points."""
     return contact_curves(result, places) if "contact" in result.dims else point_curves(result, places)
 
@@ -214,18 +223,9 @@ def place_curves(result: xr.Dataset, places: Sequence[int] | None) -> list[Curve
 def dof_curve(result: xr.Dataset, dof: int | str) -> Curve:
     """Name a degree of freedom, alone in its figure."""
     names = list(map(str, result.dof.values))
-    column = _column(dof, names)
+    with checking() as check:
+        column = check.one_of("dof", dof, names)
     return Curve(column, readable(names[column]), INK)
-
-
-def _column(chosen: int | str, names: Sequence[str]) -> int:
-    """Find the number of what was chosen to be drawn, by its number or its name."""
-    if isinstance(chosen, str) and (name := spelt(chosen, names)) is not None:
-        return names.index(name)
-    if isinstance(chosen, (int, np.integer)) and 0 <= chosen < len(names):
-        return int(chosen)
-    known = ", ".join(f"{number} ({name})" for number, name in enumerate(names))
-    raise ValueError(f"drawn can be {known}, got {shown(chosen)}")
 
 
 def readable(name: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.welch import spectral_density
+from movingfrf._basics.wording import plain
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.reports.axes import fit_height, legend_above, mark_truncation, upper_end
 from movingfrf.reports.curves import INK, PALETTE
@@ -34,6 +36,11 @@ class FrfAxes:
     # Distance of the line on which it is evaluated from the real axis, where an undamped guideway is infinite, over
     # the highest frequency [1e-9 to 1e-5: the amplitudes beside a resonance stay].
     decay: float = 1e-6
+    # Without a result: drawn until it stays below this share of what it is at 0 Hz, and no farther than [Hz;
+    # conventions].
+    faint: float = 0.1
+    farthest: float = 5000.0
+    dashes: tuple[Any, ...] = ("-", "--", "-.", ":", (0, (7, 2)))
     depth: float = 1e-5  # least over largest amplitude that is drawn [a convention]
 
 
@@ -47,12 +54,8 @@ def frf_figures(result: xr.Dataset, guideway: Guideway | None, offsets: list[flo
     """
     if guideway is None:
         return []
-    speed, truncation = result.attrs["speed"], result.attrs.get("truncation", 0.0)
-
-    def frf(frequency: FloatArray, ahead: Sequence[float]) -> ComplexArray:
-        omega = 2 * np.pi * (frequency - 1j * FRF_AXES.decay * frequency[-1])
-        return guideway.moving_frf(np.asarray(ahead), speed, omega)
-
+    truncation = result.attrs.get("truncation", 0.0)
+    frf = partial(_beside_resonances, guideway, result.attrs["speed"])
     highest = _frf_end(result, frf)
     frequency = np.linspace(0.0, highest, FRF_AXES.points)
     values = frf(frequency, offsets)
@@ -67,6 +70,55 @@ def frf_figures(result: xr.Dataset, guideway: Guideway | None, offsets: list[flo
     above.set_xlabel("")
     beyond = "the road counts as rigid" if kind_of(result) == "coupled" else "the response is left out"
     return [illustrated("frf", "Moving FRFs of the road", _frf_words(values, offsets, mark, beyond), figure)]
+
+
+def _beside_resonances(
+    guideway: Guideway, speed: float, frequency: FloatArray, ahead: Sequence[float]
+) -> ComplexArray:
+    """Evaluate moving FRFs [m/N], shape (frequency, offset), where those of an undamped guideway are finite."""
+    omega = 2 * np.pi * (frequency - 1j * FRF_AXES.decay * frequency[-1])
+    return guideway.moving_frf(np.asarray(ahead), speed, omega)
+
+
+def moving_frfs(
+    guideway: Guideway, speeds: Sequence[float], ahead: Sequence[float], frequency: FloatArray | None = None
+) -> tuple[FloatArray, list[tuple[FloatArray, dict[str, Any]]]]:
+    """Evaluate moving FRFs at some speeds and points, each with the style of its curve.
+
+    Parameters
+    ----------
+    guideway : Guideway
+        The road or track.
+    speeds : sequence of float
+        Speeds [m/s].
+    ahead : sequence of float
+        Receiver minus source [m], positive ahead.
+    frequency : ndarray, shape (frequency,), optional
+        Frequencies [Hz]; by default up to where the guideway hardly answers.
+
+    Returns
+    -------
+    frequency : ndarray
+        Frequencies [Hz].
+    curves : list of (ndarray, dict)
+        Amplitudes [µm/kN], colours, dashes and labels: a colour for each speed, or for each point at one speed.
+    """
+    if frequency is None:
+        wide = np.linspace(0.0, FRF_AXES.farthest, FRF_AXES.points)
+        under = np.abs([_beside_resonances(guideway, speed, wide, [0.0])[:, 0] for speed in speeds])
+        seen = np.flatnonzero((under >= FRF_AXES.faint * under[:, :1]).any(axis=0) & under.any())
+        end = max(float(wide[seen[-1]]) if seen.size else 0.0, FRF_AXES.least)
+        frequency = np.linspace(0.0, end, FRF_AXES.points)
+    curves: list[tuple[FloatArray, dict[str, Any]]] = []
+    for row, speed in enumerate(speeds):
+        amplitudes = 1e9 * np.abs(_beside_resonances(guideway, speed, frequency, ahead))
+        for column, point in enumerate(ahead):
+            first, second = (row, column) if len(speeds) > 1 else (column, row)
+            dash = FRF_AXES.dashes[(first // len(PALETTE) + second) % len(FRF_AXES.dashes)]
+            label = f"{plain(speed)} m/s, {_offset(point)}"
+            style = {"color": PALETTE[first % len(PALETTE)], "linestyle": dash, "linewidth": 1.5, "label": label}
+            curves.append((amplitudes[:, column], style))
+    return frequency, curves
 
 
 def _frf_end(result: xr.Dataset, frf: Callable[[FloatArray, Sequence[float]], ComplexArray]) -> float:
@@ -126,9 +178,21 @@ def frf_amplitude(
     matplotlib.axes.Axes
         `ax`.
     """
-    amplitude = 1e9 * np.abs(frf)
-    for values, style in zip(amplitude.T, _offset_styles(offsets), strict=True):
+    curves = zip(1e9 * np.abs(frf.T), _offset_styles(offsets), strict=True)
+    return draw_amplitudes(frequency, list(curves), ax, truncation=truncation)
+
+
+def draw_amplitudes(
+    frequency: FloatArray,
+    curves: Sequence[tuple[FloatArray, dict[str, Any]]],
+    ax: Axes,
+    *,
+    truncation: float | None = None,
+) -> Axes:
+    """Draw amplitudes [µm/kN], each with its style, over frequency [Hz]."""
+    for values, style in curves:
         ax.plot(frequency, values, **style)
+    amplitude = np.array([values for values, _ in curves])
     if amplitude.any():
         largest = float(amplitude.max())
         ax.set_yscale("log")
@@ -184,18 +248,21 @@ def _offset_styles(offsets: ArrayLike) -> list[dict[str, Any]]:
     """Colour by side (ahead or behind), dashes by distance, and a label for each offset."""
     values = np.atleast_1d(np.asarray(offsets, dtype=float)).tolist()
     distances = sorted({abs(value) for value in values if value})
-    dashes = ("--", "-.", ":", (0, (7, 2)))
     styles: list[dict[str, Any]] = []
     for value in values:
         if value == 0:
-            styles.append({"color": INK, "linestyle": "-", "linewidth": 1.5, "label": "under the load itself"})
+            styles.append({"color": INK, "linestyle": "-", "linewidth": 1.5, "label": _offset(value)})
             continue
         # The last colours of the palette are the least likely to stand for a contact as well.
-        side, colour = ("ahead", PALETTE[3]) if value > 0 else ("behind", PALETTE[5])
-        dash = dashes[distances.index(abs(value)) % len(dashes)]
-        label = f"{abs(value):.2f} m {side}"
-        styles.append({"color": colour, "linestyle": dash, "linewidth": 1.5, "label": label})
+        colour = PALETTE[3] if value > 0 else PALETTE[5]
+        dash = FRF_AXES.dashes[1 + distances.index(abs(value)) % (len(FRF_AXES.dashes) - 1)]
+        styles.append({"color": colour, "linestyle": dash, "linewidth": 1.5, "label": _offset(value)})
     return styles
+
+
+def _offset(value: float) -> str:
+    """Say in words where a point is [m]."""
+    return f"{abs(value):.2f} m {'ahead' if value > 0 else 'behind'}" if value else "under the load itself"
 
 
 def _finish_frf(ax: Axes, frequency: FloatArray, truncation: float | None) -> Axes:

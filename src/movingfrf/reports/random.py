@@ -138,7 +138,7 @@ def _settings(result: xr.Dataset) -> list[Setting]:
             if np.isfinite(critical)
             else "",
         ),
-        Setting("Spectrum (SI units)", attrs["spectrum"], wide=True),
+        Setting("Spectrum", attrs["spectrum"], wide=True),
         Setting("Paths", paths_in_words(result), wide=True),
         Setting("Road (SI units)", attrs["guideway"], wide=True),
     ]

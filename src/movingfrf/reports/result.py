@@ -72,7 +72,7 @@ def _settings(result: xr.Dataset) -> list[Setting]:
         *way_settings(result),
         Setting("Speed", *speeds_of(result)),
         Setting("Duration", f"{plain(duration)} s"),
-        Setting("Distance", f"{plain(float(f'{duration * abs(speed):.12g}'))} m"),
+        Setting("Distance", f"{duration * abs(speed):g} m"),
         Setting("Time step", f"{plain(1e3 * step)} ms", f"{result.sizes['time']} samples"),
         *_truncation_settings(result),
     ]

@@ -232,7 +232,7 @@ def random_response(
         "Stationary response of a vehicle and a guideway to a random road",
         speed=speed,
         exposure=exposure,
-        spectrum=repr(spectrum),
+        spectrum=str(spectrum),
         coherence=repr(shared) if coherence is not None else "one path",
         lowest_frequency=spectrum.band[0] * speed,
         highest_frequency=spectrum.band[1] * speed,

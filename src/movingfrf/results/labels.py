@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.values import Listed
 from movingfrf._basics.version import VERSION
 from movingfrf._basics.wording import in_both_units
 from movingfrf.results.findings import Finding, announced
@@ -346,6 +347,12 @@ def flaws(result: xr.Dataset, names: Iterable[str]) -> list[str]:
     return found
 
 
+def contact_names(result: xr.Dataset) -> list[str]:
+    """Names of the contacts; empty where they have none."""
+    named = "contact_name" in result.coords
+    return [str(name) for name in result.contact_name.values] if named else [""] * result.sizes["contact"]
+
+
 def speed_in_words(result: xr.Dataset) -> str:
     """Write the speed in both units."""
     # Unbreakable spaces: a number stays with its unit.
@@ -377,3 +384,13 @@ class Measure(NamedTuple):
     units: str
     standard: str = ""  # the standard or the source that defines it, where the name alone does not
     note: str = ""  # what the standard makes of the value, or why there is none (nan)
+
+
+def listed(found: Iterable[Measure]) -> list[Measure]:
+    """Make a list of measures that is shown as a table."""
+    return Listed(found, ("of", "measure", "value", "unit", "by"), _cells)
+
+
+def _cells(measure: Measure) -> Sequence[str]:
+    units = "" if measure.units == "1" else measure.units
+    return measure.quantity, measure.name, f"{measure.value:.4g}", units, measure.standard

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.values import Value
+from movingfrf._basics.values import Listed, Value
+from movingfrf._basics.wording import number
 from movingfrf.vehicles.dynamics import state_matrix
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
@@ -16,6 +18,8 @@ from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Mode(Value):
     """One vibration of a vehicle on its contact springs, the guideway rigid."""
+
+    heads: ClassVar = ("frequency", "damping", "what moves")
 
     pole: complex  # [rad/s]
     shape: ComplexArray  # (dof,), its largest entry 1
@@ -32,6 +36,18 @@ class Mode(Value):
         """Share of critical damping; 1 for a motion that does not swing."""
         return float(-self.pole.real / abs(self.pole))
 
+    def told(self) -> list[tuple[str, str]]:
+        """Tell frequency, damping and what moves, in few digits."""
+        return list(zip(self.heads, self._cells(), strict=True))
+
+    def _cells(self) -> tuple[str, str, str]:
+        damping = f"{number(100 * self.damping_ratio, 3)} % of critical"
+        return (
+            f"{number(self.frequency)} Hz",
+            damping if abs(self.damping_ratio) > 1e-9 else "none",
+            self.description,
+        )
+
 
 def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
     """Vibrations of a vehicle on a rigid road, with what moves in each.
@@ -47,7 +63,7 @@ def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
     Returns
     -------
     list of Mode
-        By ascending frequency; a motion that does not swing appears as two.
+        By ascending frequency, shown as a table; a motion that does not swing appears as two.
 
     Examples
     --------
@@ -72,7 +88,7 @@ def vehicle_modes(vehicle: Vehicle) -> list[Mode]:
             share = np.abs(whole) ** 2 / mobility
             share /= share.sum()
             found.append(Mode(complex(pole), whole, share, _described(vehicle.dof_names, share)))
-    return sorted(found, key=lambda mode: abs(mode.pole))
+    return Listed(sorted(found, key=lambda mode: abs(mode.pole)), Mode.heads, Mode._cells)
 
 
 def _described(names: Sequence[str], share: FloatArray, *, least: float = 0.03) -> str:

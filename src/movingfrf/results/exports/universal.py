@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -37,6 +38,7 @@ class Dataset58:
     first_node: Mapping[str, int]
     other_nodes: int
     letters: int  # of an entity's name
+    label: int  # letters of an axis's name
 
 
 DATASET_58 = Dataset58(
@@ -62,6 +64,7 @@ DATASET_58 = Dataset58(
     first_node={"contact": 1, "source": 1, "dof": 1001, "load": 2001, "point": 3001, "place": 4001, "ahead": 5001},
     other_nodes=6001,
     letters=10,
+    label=20,
 )
 
 
@@ -113,10 +116,16 @@ def _set(result: xr.Dataset, x: np.ndarray[Any, Any], column: Column) -> dict[st
         "abscissa_axis_lab": axis,
         "abscissa_axis_units_lab": SCHEMAS[kind][axis].units,
         "ordinate_spec_data_type": form.data.get(column.variable.removesuffix("_density"), 0),
-        "ordinate_axis_lab": column.variable[:20],
+        "ordinate_axis_lab": _label(column.variable),
         "ordinate_axis_units_lab": column.units[:20],
         "orddenom_spec_data_type": form.per.get(kind, 0),
         "z_axis_spec_data_type": 0,
         "x": x,
         "data": column.values,
     }
+
+
+def _label(variable: str) -> str:
+    """Name a variable in as many whole words as the format has room for."""
+    words = variable.replace("_density", "_PSD").replace("_", " ")
+    return textwrap.shorten(words, DATASET_58.label, placeholder="") or words[: DATASET_58.label]
