@@ -180,12 +180,6 @@ FAULTS = [
     Fault("truck as fast as a car", "scenarios/unusual.py", "if heaviest > USUAL.truck_axle:", "if False:"),
     Fault("loose dampers in silence", "scenarios/unusual.py", "if share < least:", "if False:"),
     Fault(
-        "share for per cent",
-        "metrics/listed.py",
-        '100 * of.value("lift_off_share", n)',
-        'of.value("lift_off_share", n)',
-    ),
-    Fault(
         "half a word for a label",
         "results/exports/universal.py",
         'return textwrap.shorten(words, DATASET_58.label, placeholder="") or',

@@ -157,9 +157,9 @@ FORCES = Table(
         ),
         Entry("1/s", random=OfRandom("lift-offs", _variable("lift_off_rate"), SOURCES.crossings, "load")),
         Entry(
-            "%",
-            OfHistory("share of time without contact", lambda of, n: 100 * of.loss.share[n]),
-            OfRandom("share lifted off", lambda of, n: 100 * of.value("lift_off_share", n), quantity="load"),
+            "1",
+            OfHistory("share of time without contact", lambda of, n: of.loss.share[n]),
+            OfRandom("share lifted off", _variable("lift_off_share"), quantity="load"),
         ),
         Entry("s", OfHistory("longest loss of contact", lambda of, n: of.loss.longest[n])),
         Entry(
