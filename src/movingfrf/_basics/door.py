@@ -127,6 +127,10 @@ def wanted_kinds() -> Mapping[str, Wanted]:
             "be the response to a random road, from `random_response`",
             {**result, "Scenario": "`random_response` takes its guideway, vehicle and spectrum"},
         ),
+        "file to write": Wanted(
+            "be the name of a file",
+            {"Dataset": "the order is result, file"},
+        ),
         "numbers": Wanted(
             "be an array of numbers",
             {

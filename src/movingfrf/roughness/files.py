@@ -10,7 +10,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ParameterError, checking, option, shown, spelt
-from movingfrf._basics.output import Content, behind_links, replacing
+from movingfrf._basics.output import Content, behind_links, naming, replacing
 from movingfrf._basics.wording import count, told_apart
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file, sheets
@@ -265,7 +265,8 @@ def writer(
 
     def named(profile: Profile) -> dict[str, Content]:
         try:
-            return {file.name + ending: content for ending, content in make(profile, chosen).items()}
+            with naming(file):
+                return {file.name + ending: content for ending, content in make(profile, chosen).items()}
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None
 
