@@ -49,9 +49,7 @@ def export(result: xr.Dataset, file: str | Path, *, force: bool = False) -> None
     ['time [s],force at 0 m [N],deflection at 0 m [m]', '0.0,1.0,0.0']
     """
     with checking() as check:
-        if not isinstance(file, (str, Path)):
-            check.refuse("file", mistaken("file to write", file))
-    file = Path(file)
+        file = check.file("file", file)
     if file.exists() and not force:
         raise ValueError(f"{file} exists; choose another name, or replace it with {option('force')}")
     with naming(file):
