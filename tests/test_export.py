@@ -55,7 +55,7 @@ def table(data):
 
 def test_heads_of_a_table(results):
     heads, _ = table(exported(results["coupled"], ".csv"))
-    assert heads[:3] == ["time [s]", "contact force front [N]", "contact force rear [N]"]
+    assert heads[:4] == ["time [s]", "distance [m]", "contact force front [N]", "contact force rear [N]"]
     assert "motion pitch [rad]" in heads
     assert "acceleration front_wheel [m/s2]" in heads
     assert table(exported(results["loaded"], ".csv"))[0] == [
@@ -76,6 +76,8 @@ def test_a_table_has_every_digit_of_every_column(results, kind):
     result = results[kind]
     axis = "time" if "time" in result.dims else "frequency"
     wanted = [result[axis].values[:, None]]
+    if kind in ("coupled", "coarse"):
+        wanted.append(15.0 + 10.0 * wanted[0])
     for variable in result.data_vars.values():
         if variable.dims[0] == axis:
             columns = variable.values.reshape(variable.shape[0], -1)
@@ -190,8 +192,11 @@ def test_nothing_is_replaced_unasked(results, tmp_path, capsys):
     target = tmp_path / "mine.csv"
     target.write_text("mine")
     assert main(["export", str(tmp_path / "result.nc"), str(target)]) == 2
-    assert "mine.csv exists; choose another name, or --force to replace it" in capsys.readouterr().err
-    with pytest.raises(ValueError, match=r"mine.csv exists; choose another name, or force=True to replace it"):
+    assert (
+        "mine.csv exists; choose another name, or replace it with `force` (on the command line --force)"
+        in capsys.readouterr().err
+    )
+    with pytest.raises(ValueError, match="mine.csv exists; choose another name, or replace it with `force`"):
         mf.export(results["loaded"], target)
     assert target.read_text() == "mine"
     assert main(["export", str(tmp_path / "result.nc"), str(target), "--force"]) == 0
@@ -218,6 +223,99 @@ def test_a_variable_of_ones_own(results, tmp_path):
     pyuff = pytest.importorskip("pyuff", reason="the extra `io` is not installed")
     mf.export(own, tmp_path / "a.uff")
     assert pyuff.UFF(str(tmp_path / "a.uff")).read_sets()[-1]["rsp_node"] == 6002
+
+
+def heads_of(result):
+    return [head for head in table(exported(result, ".csv"))[0] if not head.startswith(("time", "distance"))]
+
+
+def test_a_part_keeps_its_names_and_units(results):
+    """What was chosen by one value, of a dimension or of two, is named as it is in the whole."""
+    whole, transfer = results["coupled"], results["transfer"]
+    assert heads_of(whole.sel(dof="pitch"))[2:6] == [
+        "deflection front [m]",
+        "deflection rear [m]",
+        "motion pitch [rad]",
+        "acceleration pitch [rad/s2]",
+    ]
+    assert heads_of(whole.isel(contact=1))[:2] == ["contact force rear [N]", "deflection rear [m]"]
+    assert heads_of(whole.isel(contact=[1]))[0] == "contact force rear [N]"
+    assert heads_of(whole.drop_vars("contact_name").isel(contact=[1]))[0] == "contact force contact 1 [N]"
+    one = table(exported(transfer.isel(source=1, contact=0).sel(dof="pitch"), ".csv"))[0]
+    assert "contact force front per roughness under contact 1 (real) [N/m]" in one
+    assert "motion pitch per roughness under contact 1 (imaginary) [rad/m]" in one
+    assert "motion density pitch [rad2/Hz]" in table(exported(results["random"].sel(dof="pitch"), ".csv"))[0]
+    assert heads_of(results["loaded"].isel(point=1))[-1] == "deflection at 2 m [m]"
+
+
+def test_dimensions_in_any_order_and_more_of_them(results):
+    whole = results["coupled"]
+    assert exported(whole.transpose("contact", "dof", "time", ...), ".csv") == exported(whole, ".csv")
+    twice = xr.concat([whole, whole], "case")
+    heads, numbers = table(exported(twice[["contact_force"]], ".csv"))
+    for name, case, contact in (("front case 1", 1, 0), ("rear case 0", 0, 1)):
+        column = numbers[:, heads.index(f"contact force {name} [N]")]
+        np.testing.assert_array_equal(column, twice.contact_force.values[case, :, contact])
+    numbered = heads_of(twice.assign_coords(case=[0.5, 2.0])[["contact_force"]])
+    assert numbered[2] == "contact force front case 2.0 [N]"
+    alike = heads_of(results["loaded"].assign_coords(load=("load", [0.0, 0.0], {"units": "m"})))
+    assert alike[:2] == ["force load 0 [N]", "force load 1 [N]"]
+
+
+def test_units_are_those_that_a_variable_says(results):
+    whole = results["coupled"]
+    in_kn = whole.assign(contact_force=(whole.contact_force / 1e3).assign_attrs(units="kN"))
+    assert heads_of(in_kn)[0] == "contact force front [kN]"
+    assert "motion pitch [m or rad]" in heads_of(whole.drop_vars("dof_unit"))
+    assert "motion [m or rad]" in heads_of(whole.mean("dof", keep_attrs=True))
+
+
+@pytest.mark.parametrize("ending", [".csv", ".uff"])
+def test_a_part_without_a_history_is_refused(results, ending):
+    if ending == ".uff":
+        pytest.importorskip("pyuff", reason="the extra `io` is not installed")
+    for kind, left in (("coupled", ["static_load", "time"]), ("random", ["static_load", "frequency"])):
+        with pytest.raises(ValueError, match=r"result must hold a variable over \w+, got none; .mat takes"):
+            exported(results[kind][left], ending)
+    assert exported(results["random"][["static_load", "frequency"]], ".mat")
+
+
+def test_a_universal_file_of_what_is_over_time_alone(results, tmp_path):
+    pyuff = pytest.importorskip("pyuff", reason="the extra `io` is not installed")
+    whole = results["coupled"]
+
+    def nodes(part):
+        mf.export(part, tmp_path / "a.uff", force=True)
+        sets = pyuff.UFF(str(tmp_path / "a.uff")).read_sets()
+        return {one["id1"]: (one["rsp_node"], one["rsp_ent_name"].strip()) for one in sets}
+
+    assert nodes(whole.isel(contact=1))["contact force rear"] == (2, "rear")
+    assert nodes(whole.isel(contact=[1]))["contact force rear"] == (2, "rear")
+    assert nodes(whole.mean("contact", keep_attrs=True))["contact force"] == (0, "NONE")
+    assert nodes(whole.assign(wind=("time", np.ones(2000))))["wind"] == (0, "NONE")
+    assert nodes(whole.drop_vars("dof_unit"))["motion pitch"] == (1002, "pitch")
+
+
+def test_variables_called_as_the_structures_of_a_matlab_file(results):
+    own = results["loaded"].assign(units=("time", np.arange(200.0)), settings=("time", np.ones(200)), units_2=7.0)
+    there = scipy.io.loadmat(io.BytesIO(exported(own, ".mat")), simplify_cells=True)
+    assert there["units"]["force"] == "N"
+    assert there["settings"]["kind"] == "loaded"
+    assert np.array_equal(there["units_2"], np.arange(200.0))
+    assert there["dimensions"]["settings_2"] == "time"
+    assert there["units_2_2"] == 7.0
+
+
+def test_a_full_disk_where_a_universal_file_is_made(results, tmp_path, monkeypatch):
+    pyuff = pytest.importorskip("pyuff", reason="the extra `io` is not installed")
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(pyuff.UFF, "write_sets", full)
+    with pytest.raises(OSError, match="No space left on device, while it is made in ") as failed:
+        mf.export(results["coupled"], tmp_path / "a.uff")
+    assert failed.value.filename == str(tmp_path / "a.uff")
 
 
 def test_what_pyuff_hides(results, tmp_path, monkeypatch):

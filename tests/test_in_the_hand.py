@@ -14,6 +14,7 @@ import pytest
 import xarray as xr
 
 import movingfrf as mf
+from movingfrf._basics.checks import shown
 from movingfrf._basics.values import Value, content
 from movingfrf.roughness.road import Road
 from movingfrf.scenarios.reading import parse_scenario
@@ -251,6 +252,47 @@ MISTAKEN = {
         ),
         "tyre_stiffness must be two numbers .*linear",
     ),
+    "tables for a file": (lambda: mf.read_scenario({"run": {}}), "file must be the name of a file, .*; the tables of"),
+    "nothing for a file": (lambda: mf.read_profile(None), "file must be the name of a file, got None$"),
+    "a number for a file": (lambda: mf.read_vehicle(5), "file must be the name of a file, got 5$"),
+    "bytes for a file": (lambda: mf.read_sampled_guideway(b"a.npz"), "file must be the name of a file, got a bytes$"),
+    "files": (lambda: mf.read_profile(["a.csv", "b.csv"]), "a list of str; one file after the other"),
+    "a vehicle for a file": (lambda: mf.write_vehicle(CAR, CAR), "the vehicle comes first, then the file"),
+    "a profile for a file": (lambda: mf.write_profile(wavy(), wavy()), "the profile comes first, then the file"),
+    "file and result swapped": (lambda: mf.export("x.csv", RESULT), "the result comes first, then the file"),
+    "a number to export into": (lambda: mf.export(RESULT, 5), "file must be the name of a file, got 5$"),
+    "forces for coefficients": (
+        lambda: mf.road_stress_factor(RESULT.contact_force),
+        r"coefficient must be dynamic load coefficients, .* got a DataArray; `dynamic_load_coefficient\(result\)`",
+    ),
+    "loads for coefficients": (lambda: mf.road_stress_factor(RESULT.static_load), "got a DataArray; `dynamic_load"),
+    "bare forces for coefficients": (
+        lambda: mf.road_stress_factor(RESULT.contact_force.values),
+        r"at least zero throughout, got -[\d.]+; `dynamic_load_coefficient\(result\)` makes them of a result, not of",
+    ),
+    "beam and foundation swapped": (
+        lambda: mf.track(TRACK.foundation, TRACK.beam),
+        "beam must be a beam, got a Spring; the order is beam, foundation; foundation must be a foundation, got an E",
+    ),
+    "vehicle and spectrum swapped": (lambda: mf.random_response(TRACK, ISO, CAR, speed=1.0), "and then profile or sp"),
+    "spectrum and guideway swapped": (lambda: mf.random_response(ISO, CAR, TRACK, speed=1.0), "the order is guideway"),
+    "a result for a profile": (lambda: mf.iri(RESULT), "got a Dataset; a result does not hold its profile"),
+    "a result to prepare": (lambda: mf.resampled(RESULT, 0.5), "got a Dataset; a result does not hold its profile"),
+    "a result to describe": (lambda: mf.describe_profile(RESULT), "a result does not hold its profile"),
+    "histories for a history": (
+        lambda: mf.rainflow(RESULT.contact_force),
+        r"got \(1000, 2\); one column at a time, as result.contact_force.sel\(contact=0\)$",
+    ),
+    "accelerations for one": (
+        lambda: mf.whole_body_vibration(RESULT.acceleration, 1e-3),
+        r"one column at a time, as result.acceleration.sel\(dof='bounce'\)$",
+    ),
+    "bare histories": (lambda: mf.level_crossings(np.ones((9, 2)), [0.5]), r"column at a time, as values\[:, 0\]$"),
+    "an array for a vehicle": (lambda: mf.simulate(TRACK, np.ones(3), wavy(), **TRAVEL), "a Vehicle, got an ndarray$"),
+    "a variable for a number": (
+        lambda: mf.simulate(TRACK, TRUCK, wavy(), speed=RESULT.contact_force, duration=1.0),
+        r"^speed must be a positive number \[m/s\], got a DataArray; one constant speed",
+    ),
 }  # fmt: skip
 
 
@@ -259,6 +301,40 @@ def test_what_stands_where_something_else_belongs_is_refused_with_what_to_do(nam
     call, said = MISTAKEN[name]
     with pytest.raises(ValueError, match=said):
         call()
+
+
+def test_what_is_taken_takes_the_place_that_a_refusal_names():
+    """One column of a result, its coefficients, a profile of stations and elevations."""
+    assert mf.rainflow(RESULT.contact_force.sel(contact=0)).shape[1] == 2
+    assert (mf.road_stress_factor(mf.dynamic_load_coefficient(RESULT)) > 1).all()
+    assert (mf.road_stress_factor(RANDOM.dynamic_load_coefficient) > 1).all()
+
+
+@pytest.mark.parametrize("call", [lambda: mf.weighted(RESULT, 1e-3), lambda: mf.vibration_dose("x", 1e-3)])
+def test_one_fault_is_said_once(call):
+    with pytest.raises(mf.ParameterError) as refused:
+        call()
+    assert len(refused.value.faults) == 1
+
+
+def test_what_is_shown_in_a_message_takes_one_line():
+    for value in (RESULT, RESULT.contact_force, wavy(), np.eye(3), [np.eye(2)], {"a": np.eye(2)}):
+        assert "\n" not in shown(value)
+    assert shown(np.eye(2)) == "array([[1., 0.], [0., 1.]])"
+
+
+def test_what_is_read_is_shown_in_a_few_lines(tmp_path):
+    mf.write_profile(wavy(), tmp_path / "road.csv")
+    read = mf.read_profile(tmp_path / "road.csv")
+    lines = repr(read).splitlines()
+    assert lines[0] == "ReadProfile"
+    assert lines[1:-1] == repr(read.profile).splitlines()[1:] or len(lines) < 9
+    assert lines[-1].split(maxsplit=1) == ["understood", read.understood]
+    table = read._repr_html_()
+    assert table.startswith("<table><caption>ReadProfile</caption>")
+    assert "800 stations from 0 m" in table
+    profile, understood = read
+    assert (profile, understood) == (read.profile, read.understood)
 
 
 def test_every_argument_of_a_kind_is_looked_at():

@@ -192,6 +192,8 @@ def test_running_rms_and_dose_of_a_burst():
     # Before the record there was nothing.
     assert mf.running_rms(np.ones(10), 0.1)[0] == pytest.approx(np.sqrt(0.1))
     assert mf.vibration_dose(values, step) == pytest.approx(32**0.25, rel=1e-12)
+    # Without the first seconds, as if they had not been.
+    np.testing.assert_array_equal(mf.running_rms(values, step, since=4.5), mf.running_rms(values[4500:], step))
     # Several histories, in any arrangement.
     grid = values[:, None, None] * np.array([[1.0, 2.0, 0.0]])
     assert mf.vibration_dose(grid, step) == pytest.approx(32**0.25 * np.array([[1.0, 2.0, 0.0]]))
@@ -280,6 +282,7 @@ def test_comfort_of_a_result():
         (lambda: mf.weighted([0.0, np.inf], 1e-3), "acceleration must be finite"),
         (lambda: mf.weighted([0.0, 1.0], 0.0), "time_step must be positive"),
         (lambda: mf.running_rms([1.0], 1e-3, 0.0), "window must be positive"),
+        (lambda: mf.running_rms([1.0] * 9, 1e-3, since=1.0), "since must lie within the record"),
         (lambda: mf.vibration_dose([1.0], -1.0), "time_step must be positive"),
         (lambda: mf.comfort_reactions(-1.0), "rms must not be negative"),
         (lambda: mf.vibration_total([[1.0]]), "rms must have shape"),

@@ -278,6 +278,27 @@ def test_scales():
     assert mf.spectral_damage(F, 0 * F, slope=4.0) == 0.0
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_lines(method):
+    """One line is a narrow band by every method, ν₀ (√2 σ)^m Γ(1 + m/2), wherever it stands; at 0 Hz all is at rest."""
+    for f, density, nu in (
+        ([1.0, 2.0, 3.0], [0.0, 1.0, 0.0], 2.0),
+        ([1.0, 2.0], [0.0, 2.0], 2.0),
+        ([0.0, 0.1, 0.2], [0.0, 10.0, 0.0], 0.1),
+        ([7.0, 7.0 + 1e-6], [1e6, 1e6], 7.0),
+    ):
+        found = mf.spectral_damage(f, density, slope=4.0, method=method)
+        assert found == pytest.approx(nu * 4.0 * 2.0, rel=1e-5), (f, density)
+    for density in ([1.0, 0.0], [1e3, 0.0]):
+        assert mf.spectral_damage([0.0, 1.0], density, slope=4.0, method=method) == 0.0
+    # Towards a line every method ends in it.
+    for width in 10.0 ** np.arange(-9, -2):
+        found = mf.spectral_damage([5.0 - width, 5.0, 5.0 + width], [0.0, 1 / width, 0.0], slope=4.0, method=method)
+        assert found == pytest.approx(40.0, rel=1e-4)
+        found = mf.spectral_damage([5.0 - width, 5.0 + width], [0.5 / width, 0.5 / width], slope=4.0, method=method)
+        assert found == pytest.approx(40.0, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [

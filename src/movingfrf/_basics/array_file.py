@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from movingfrf._basics import matlab_file, numpy_file
-from movingfrf._basics.checks import Checks
+from movingfrf._basics.checks import Checks, checking
 from movingfrf._basics.output import write_whole
 
 
@@ -78,7 +78,8 @@ def read_arrays(file: str | Path, content: Content, others: Mapping[str, Reader]
     ValueError
         If the file cannot be read, is too large, or has another ending.
     """
-    path = Path(file)
+    with checking() as check:
+        path = check.file("file", file)
     readers = {".mat": _read_mat, ".npz": _read_npz, **(others or {})}
     if path.suffix.lower() not in readers:
         raise ValueError(
@@ -111,7 +112,8 @@ def write_arrays(file: str | Path, arrays: Mapping[str, Any], what: str) -> None
     OSError
         If the file cannot be written; then what was there is there still.
     """
-    path = Path(file)
+    with checking() as check:
+        path = check.file("file", file)
     if path.suffix.lower() == ".npz":
         made = numpy_file.as_npz(arrays)
     elif path.suffix.lower() == ".mat":

@@ -10,6 +10,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from numbers import Real
+from os import PathLike
+from pathlib import Path
 from types import FrameType
 from typing import Any, NamedTuple, TypeVar
 
@@ -17,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.door import beyond_limits, instead_of
+from movingfrf._basics.door import beyond_limits, instead_of, mistaken, one_of
 from movingfrf._basics.door import shown as shown
 from movingfrf._basics.wording import enumerated
 
@@ -207,6 +209,13 @@ class Checks:
         self.refuse(name, f"must be a text, got {shown(value)}")
         return ""
 
+    def file(self, name: str, value: Any) -> Path:
+        """Demand the name of a file."""
+        if isinstance(value, (str, PathLike)):
+            return self.keep(name, Path(value))
+        self.refuse(name, mistaken("file", value))
+        return Path()
+
     def choice(self, name: str, value: Any, known: Iterable[str]) -> str:
         """Demand one of some words; returns it as it is known."""
         known = list(known)
@@ -251,7 +260,8 @@ class Checks:
         shape = array.shape if shape is None else shape
         wanted = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
         if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
-            self.refuse(name, f"must have shape {wanted}, got {array.shape}")
+            hint = one_of(name, value) if shape == (None,) and array.ndim == 2 and array.shape[1] > 1 else ""
+            self.refuse(name, f"must have shape {wanted}, got {array.shape}{hint}")
             return np.full([n or 1 for n in shape], np.nan)
         bad = np.argwhere(~(np.abs(array) <= CREDIBLE.largest))
         if len(bad):

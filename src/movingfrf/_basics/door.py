@@ -22,12 +22,13 @@ class Wanted(NamedTuple):
 @cache
 def wanted_kinds() -> Mapping[str, Wanted]:
     """Everything that may be wanted, by what it is called here."""
-    order = "the order is guideway, vehicle, profile"
+    order = "the order is guideway, vehicle, and then profile or spectrum"
     endless = {
         "EulerBernoulliBeam": "`track(beam, foundation)` puts a beam on a foundation",
         "TimoshenkoBeam": "`track(beam, foundation)` puts a beam on a foundation",
         "Vehicle": order,
         "Profile": order,
+        ".variance_below": order,
         "Scenario": "`scenario.guideway` is that of a scenario",
         "text": "`read_scenario(file).guideway` is that of a scenario; `read_sampled_guideway` reads a record",
     }
@@ -67,6 +68,7 @@ def wanted_kinds() -> Mapping[str, Wanted]:
             "be a Vehicle",
             {
                 "Profile": order,
+                ".variance_below": order,
                 ".moving_frf": order,
                 "FiniteGuideway": order,
                 "Scenario": "`scenario.case.vehicle` is that of a scenario",
@@ -87,6 +89,7 @@ def wanted_kinds() -> Mapping[str, Wanted]:
                 "FiniteGuideway": order,
                 "Scenario": "`scenario.case.road.profile` is that of a scenario",
                 "text": "`read_profile(file).profile` reads one",
+                "Dataset": "a result does not hold its profile: the one that it was computed from is wanted",
                 "[Profile]": "`side_by_side(*profiles)` puts several beside each other, a path each, and "
                 "`superposed(*profiles)` adds them up",
                 "DataArray": "`Profile(distance, elevation)` makes one of stations and elevations",
@@ -102,6 +105,8 @@ def wanted_kinds() -> Mapping[str, Wanted]:
             "be a roughness spectrum, as IsoRoad is",
             {
                 "Profile": "`simulate` takes a profile; `describe_profile` fits a spectrum to one",
+                "Vehicle": order,
+                ".moving_frf": order,
                 "ReadProfile": "`simulate` takes its `.profile`",
                 "text": "`IsoRoad.of_class(letter)` makes one of a class",
                 "float": "`IsoRoad(roughness)` makes one of a density at 0.1 cycle/m [m³]",
@@ -163,6 +168,17 @@ def wanted_kinds() -> Mapping[str, Wanted]:
             "be the response to a random road, from `random_response`",
             {**result, "Scenario": "`random_response` takes its guideway, vehicle and spectrum"},
         ),
+        "file": Wanted(
+            "be the name of a file",
+            {
+                "dict": "the tables of a scenario or a vehicle are read from a TOML file",
+                "Dataset": "the result comes first, then the file",
+                "Profile": "the profile comes first, then the file",
+                "Vehicle": "the vehicle comes first, then the file",
+                "SampledGuideway": "the guideway comes first, then the file",
+                "[str]": "one file after the other",
+            },
+        ),
         "numbers": Wanted(
             "be an array of numbers",
             {
@@ -172,8 +188,12 @@ def wanted_kinds() -> Mapping[str, Wanted]:
             },
         ),
         "load coefficient": Wanted(
-            "be numbers of at least zero",
-            {"Dataset": "`dynamic_load_coefficient(result)` makes them of a result"},
+            "be dynamic load coefficients, numbers of at least zero",
+            {
+                "Dataset": "`dynamic_load_coefficient(result)` makes them of a result",
+                "DataArray": "`dynamic_load_coefficient(result)` makes them of a result",
+                ".shape": "`dynamic_load_coefficient(result)` makes them of a result, not of its forces",
+            },
         ),
     }
 
@@ -223,13 +243,15 @@ def beyond_limits(name: str, value: object) -> str:
 
 
 def shown(value: object) -> str:
-    """Write a refused value, shortened where it is long; of what is shown in lines, the class."""
+    """Write a refused value in a line, shortened where it is long; of what is shown in several, the class."""
     try:
         text = repr(value)
     except ValueError:  # an integer of thousands of digits
         text = "a number of thousands of digits"
-    if hasattr(value, "told") and "\n" in text:
-        return given(value)
+    if "\n" in text:
+        if type(value).__module__ not in ("builtins", "numpy"):
+            return given(value)
+        text = " ".join(text.split())
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
@@ -244,7 +266,17 @@ def given(value: object) -> str:
     if isinstance(value, (list, tuple)) and not hasattr(value, "_fields"):
         return f"a {type(value).__name__} of {type(value[0]).__name__}" if value else shown(value)
     name = type(value).__name__
-    return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
+    return f"{'an' if name[0] in 'AEIOUaeiou' or name == 'ndarray' else 'a'} {name}"
+
+
+def one_of(name: str, value: Any) -> str:
+    """Say how to take one column of what has several, behind a semicolon."""
+    dims = getattr(value, "dims", None)
+    if dims is None:
+        return f"; one column at a time, as {name}[:, 0]"
+    places = value.coords[dims[1]].values.tolist() if dims[1] in value.coords else []
+    choice = f"sel({dims[1]}={places[0]!r})" if places else f"isel({dims[1]}=0)"
+    return f"; one column at a time, as {f'result.{value.name}' if value.name else name}.{choice}"
 
 
 def _kind(value: Any) -> str:

@@ -32,8 +32,13 @@ def undone(undo: Callable[[], object]) -> Iterator[None]:
 
 
 @contextmanager
-def scratch() -> Iterator[Path]:
+def scratch(doing: str = "made") -> Iterator[Path]:
     """Lend a folder for the time of the block.
+
+    Parameters
+    ----------
+    doing : str
+        What happens there to the file that the block is about: it is `made`, or `unpacked`.
 
     Yields
     ------
@@ -43,14 +48,16 @@ def scratch() -> Iterator[Path]:
     Raises
     ------
     OSError
-        If it cannot be made, or the block cannot write there; with a name.
+        If it cannot be made, or the block cannot write there: why, and where, without a name. The folder's says
+        nothing to anybody, and whoever knows that of the file gives it.
     """
     folder = Path(tempfile.mkdtemp(prefix="movingfrf-"))
     with undone(partial(shutil.rmtree, folder, ignore_errors=True)):
         try:
             yield folder
         except OSError as error:  # a full disk, where a library does not say which
-            raise OSError(error.errno, error.strerror or str(error), error.filename or str(folder)) from None
+            said = f"{error.strerror or error}, while it is {doing} in {folder.parent}"
+            raise OSError(error.errno, said) from None
 
 
 def carried_out(

@@ -39,18 +39,11 @@ class Value:
 
     def __repr__(self) -> str:
         """Show it in a few lines."""
-        lines = self.told()
-        across = max((len(name) for name, _ in lines), default=0)
-        return "\n".join([type(self).__name__, *(f"  {name:<{across}}  {words}" for name, words in lines)])
+        return in_lines(self, self.told())
 
     def _repr_html_(self) -> str:
         """Show it as a small table in a notebook."""
-        rows = "".join(
-            f'<tr><th style="text-align:left">{escape(name)}</th>'
-            f'<td style="text-align:left">{escape(words)}</td></tr>'
-            for name, words in self.told()
-        )
-        return f"<table><caption>{escape(type(self).__name__)}</caption>{rows}</table>"
+        return as_table(self, self.told())
 
     def told(self) -> list[tuple[str, str]]:
         """Tell what is shown: names and words, a pair a line; the fields, unless a class knows better."""
@@ -102,6 +95,21 @@ class Listed(list[Kind]):
 
     def _more(self) -> list[str]:
         return [f"… {len(self) - self.most} more"] if len(self) > self.most else []
+
+
+def in_lines(value: object, told: Sequence[tuple[str, str]]) -> str:
+    """Show a value by its class and, below it, what it tells, a line each."""
+    across = max((len(name) for name, _ in told), default=0)
+    return "\n".join([type(value).__name__, *(f"  {name:<{across}}  {words}" for name, words in told)])
+
+
+def as_table(value: object, told: Sequence[tuple[str, str]]) -> str:
+    """Show a value as a small table of HTML, its class above what it tells."""
+    rows = "".join(
+        f'<tr><th style="text-align:left">{escape(name)}</th><td style="text-align:left">{escape(words)}</td></tr>'
+        for name, words in told
+    )
+    return f"<table><caption>{escape(type(value).__name__)}</caption>{rows}</table>"
 
 
 def content(value: Any) -> Any:

@@ -25,7 +25,5 @@ def export(file: Path, target: Path, /, *, force: bool = False) -> None:
     from movingfrf.results.export import export as write
     from movingfrf.results.files import opened
 
-    if target.exists() and not force:
-        raise ValueError(f"{target} exists; choose another name, or --force to replace it")
     write(opened(file), target, force=force)
     plain_console().print(f"wrote {target}", soft_wrap=True)

@@ -149,11 +149,14 @@ def track(beam: Beam, foundation: Foundation) -> Track:
     ValueError
         If one of the two is not what it should be, or the beam buckles on the foundation.
     """
+    order = "; the order is beam, foundation"
     with checking() as check:
         if not isinstance(beam, Beam):
-            check.refuse("beam", f"must be a beam, got {given(beam)}")
+            hint = order if isinstance(beam, Foundation) else ""
+            check.refuse("beam", f"must be a beam, got {given(beam)}{hint}")
         if not isinstance(foundation, Foundation):
-            check.refuse("foundation", f"must be a foundation, got {given(foundation)}")
+            hint = order if isinstance(foundation, Beam) else ""
+            check.refuse("foundation", f"must be a foundation, got {given(foundation)}{hint}")
     made = Track(beam, foundation)
     if (wavenumber := buckles_at(made.stiffness(damped=False))) > 0:
         raise ValueError(

@@ -262,8 +262,10 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk", *, rec
     return scipy.fft.irfft(spectra * factor[:, None], padded, axis=0)[: len(values)].reshape(shape)
 
 
-def running_rms(values: ArrayLike, time_step: float, window: float = ISO_2631.running) -> FloatArray:
-    """Root mean square over the time just past; before the record there was nothing.
+def running_rms(
+    values: ArrayLike, time_step: float, window: float = ISO_2631.running, *, since: float = 0.0
+) -> FloatArray:
+    """Root mean square over the time just past; before what is measured there was nothing.
 
     Parameters
     ----------
@@ -273,16 +275,18 @@ def running_rms(values: ArrayLike, time_step: float, window: float = ISO_2631.ru
         Step in time [s].
     window : float
         Time over which the mean is taken [s].
+    since : float
+        Seconds to leave out at the start [s].
 
     Returns
     -------
     ndarray, shape (time, *s)
-        Running rms [unit of the histories].
+        Running rms of what is left [unit of the histories].
 
     Raises
     ------
     ValueError
-        If a time is not positive, or values are not finite.
+        If a time is not positive, values are not finite, or nothing is left of them.
 
     References
     ----------
@@ -292,12 +296,12 @@ def running_rms(values: ArrayLike, time_step: float, window: float = ISO_2631.ru
         time_step = check.positive("time_step", time_step, "s")
         window = check.positive("window", window, "s")
         histories, shape = _histories(check, "values", values, "any unit")
-    squares = histories**2
+    squares = histories[samples_before(since, time_step, len(histories)) :] ** 2
     energy = np.concatenate([np.zeros_like(squares[:1]), np.cumsum(squares, axis=0)])
     steps = max(round(window / time_step), 1)
     first = np.maximum(np.arange(1, len(energy)) - steps, 0)
     # Differences of a sum may come out just below zero.
-    return np.sqrt(np.maximum(energy[1:] - energy[first], 0.0) / steps).reshape(shape)
+    return np.sqrt(np.maximum(energy[1:] - energy[first], 0.0) / steps).reshape(-1, *shape[1:])
 
 
 def vibration_dose(values: ArrayLike, time_step: float, *, since: float = 0.0) -> FloatArray:
@@ -509,7 +513,10 @@ def _without_line(values: FloatArray, time_step: float) -> tuple[FloatArray, Flo
 
 def _histories(check: Checks, name: str, values: ArrayLike, unit: str) -> tuple[FloatArray, tuple[int, ...]]:
     """Histories side by side (time, channel), and the shape in which they came."""
+    before = len(check.faults)
     array = check.array(name, values, unit, None)
+    if len(check.faults) > before:
+        return np.ones((1, 1)), (1,)
     if not array.size or not array.ndim:
         check.refuse(name, f"must hold at least one sample, in a first axis over time, got shape {array.shape}")
         return np.ones((1, 1)), array.shape

@@ -192,7 +192,8 @@ def spectral_damage(
     The expected damage of its rainflow cycles. For a narrow band ν₀ (√2 σ)^m Γ(1 + m/2)/C, with the rate of
     upward zero crossings ν₀ and the standard deviation σ; for a wide band that is too much, and the other methods
     approximate the distribution of rainflow amplitudes from spectral moments. They are fits: where one leaves what
-    a Gaussian process can do, above that bound or not above zero, its result is refused.
+    a Gaussian process can do, above that bound or not above zero, its result is refused. A single line is a narrow
+    band by every method; what is at 0 Hz does no damage.
 
     Parameters
     ----------
@@ -252,10 +253,15 @@ def spectral_damage(
     def moment(order: float) -> float:
         return float(np.trapezoid(unit * f**order, f))
 
+    if not moment(2):
+        return 0.0  # all of it at rest
     irregularity = moment(2) / np.sqrt(moment(4))
+    # Closer to 1 than this a band is one line, where the narrow band's damage is exact and others divide nothing by
+    # nothing [1e-12 to 1e-7].
+    line = 1e-9
     # A method that does not hold may divide by zero; what comes of it is refused.
     with np.errstate(all="ignore"):
-        share = METHODS[method](moment, slope)
+        share = METHODS[method if irregularity < 1 - line else "narrow_band"](moment, slope)
     # By how much a method may exceed the narrow band's damage, which bounds that of every Gaussian process:
     # rounding [1e-12 to 1e-6].
     rounding = 1e-6

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import BoolArray, FloatArray, require_memory
 from movingfrf._basics.checks import Checks, checking, real_numbers
-from movingfrf._basics.door import mistaken
+from movingfrf._basics.door import instead_of, mistaken
 from movingfrf._basics.spline import cubic
 from movingfrf._basics.values import Value
 from movingfrf._basics.wording import told_apart
@@ -109,12 +109,14 @@ def road_stress_factor(coefficient: ArrayLike) -> FloatArray:
     array([1.    , 1.2448])
     """
     with checking() as check:
-        if hasattr(coefficient, "data_vars"):
+        # Forces are no ratios, whether or not they are all positive.
+        if hasattr(coefficient, "data_vars") or getattr(coefficient, "attrs", {}).get("units", "1") != "1":
             check.refuse("coefficient", mistaken("load coefficient", coefficient))
     s = real_numbers(coefficient)
     with checking() as check:
         if not (s >= 0).all():
-            check.refuse("coefficient", f"must be at least zero throughout, got {s[~(s >= 0)][0]:g}")
+            hint = instead_of("load coefficient", coefficient)
+            check.refuse("coefficient", f"must be at least zero throughout, got {s[~(s >= 0)][0]:g}{hint}")
     return 1 + 6 * s**2 + 3 * s**4
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from movingfrf._basics.checks import checking
+from movingfrf._basics.checks import checking, option
 from movingfrf._basics.door import mistaken
-from movingfrf._basics.output import write_whole
+from movingfrf._basics.output import naming, write_whole
 from movingfrf.results.exports import columns, matlab, universal
 from movingfrf.results.labels import kind_of
 
@@ -19,10 +19,10 @@ def export(result: xr.Dataset, file: str | Path, *, force: bool = False) -> None
     """Write a result for other programs: .csv, .mat or .uff.
 
     `.csv`: a line a time or frequency, a column for each contact, degree of freedom, load and point, with units in
-    the heads, as `contact force front [N]`; complex numbers as two columns. `.mat`: every variable under its name,
-    beside them the structures `units`, `long_name`, `dimensions` and `settings`. `.uff`: a universal file with a
-    dataset 58 for each column, named, with units, directions and its function type; 12 digits, 6 of the step. A
-    result itself is netCDF: `result.to_netcdf(file, engine="h5netcdf")`.
+    the heads, as `contact force front [N]`, and of a journey the distance of the vehicle; complex numbers as two
+    columns. `.mat`: every variable under its name, beside them the structures `units`, `long_name`, `dimensions` and
+    `settings`. `.uff`: a universal file with a dataset 58 for each column, named, with units, directions and its
+    function type; 12 digits, 6 of the step. A result itself is netCDF: `result.to_netcdf(file, engine="h5netcdf")`.
 
     Parameters
     ----------
@@ -36,8 +36,8 @@ def export(result: xr.Dataset, file: str | Path, *, force: bool = False) -> None
     Raises
     ------
     ValueError
-        If the result is none of the package, there is no such kind of file, the file exists, or what the kind needs
-        is not installed.
+        If the result is none of the package, or no variable of it is over time or frequency, there is no such kind
+        of file, the file exists, or what the kind needs is not installed.
     OSError
         If the file cannot be written; nothing is left half-written.
 
@@ -48,10 +48,12 @@ def export(result: xr.Dataset, file: str | Path, *, force: bool = False) -> None
     >>> exported(loads, ".csv").decode().splitlines()[:2]
     ['time [s],force at 0 m [N],deflection at 0 m [m]', '0.0,1.0,0.0']
     """
-    file = Path(file)
-    made = exported(result, file.suffix)
+    with checking() as check:
+        file = check.file("file", file)
     if file.exists() and not force:
-        raise ValueError(f"{file} exists; choose another name, or force=True to replace it")
+        raise ValueError(f"{file} exists; choose another name, or replace it with {option('force')}")
+    with naming(file):
+        made = exported(result, file.suffix)
     write_whole(file, made)
 
 

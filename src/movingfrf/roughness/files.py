@@ -10,7 +10,8 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ParameterError, checking, option, shown, spelt
-from movingfrf._basics.output import Content, behind_links, replacing
+from movingfrf._basics.output import Content, behind_links, naming, replacing
+from movingfrf._basics.values import as_table, in_lines
 from movingfrf._basics.wording import count, told_apart
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file, sheets
@@ -62,6 +63,18 @@ class ReadProfile(NamedTuple):
 
     profile: Profile
     understood: str
+
+    def __repr__(self) -> str:
+        """Show the profile and the sentence in a few lines."""
+        return in_lines(self, self.told())
+
+    def _repr_html_(self) -> str:
+        """Show them as a small table in a notebook."""
+        return as_table(self, self.told())
+
+    def told(self) -> list[tuple[str, str]]:
+        """Tell what the profile tells, and how the file was understood."""
+        return [*self.profile.told(), ("understood", self.understood)]
 
 
 @naming_formats
@@ -140,8 +153,8 @@ def read_profile(
     >>> profile.elevation.tolist()
     [0.0015, 0.0025, 0.002, 0.001]
     """
-    path = Path(file)
     with checking() as check:
+        path = check.file("file", file)
         if repair_gaps is not None:
             repair_gaps = check.positive("repair_gaps", repair_gaps, "m")
         wanted = None if across is None else check.array("across", across, "m", (None,))
@@ -239,7 +252,8 @@ def write_profile(
     [0.0, 1.0, 2.0, 3.0]
     """
     require_profile(profile)
-    path = behind_links(Path(file))
+    with checking() as check:
+        path = behind_links(check.file("file", file))
     made = writer(path, format=format, encoding=encoding)(profile)
     with replacing(path.parent) as files:
         files |= made
@@ -265,7 +279,8 @@ def writer(
 
     def named(profile: Profile) -> dict[str, Content]:
         try:
-            return {file.name + ending: content for ending, content in make(profile, chosen).items()}
+            with naming(file):
+                return {file.name + ending: content for ending, content in make(profile, chosen).items()}
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None
 

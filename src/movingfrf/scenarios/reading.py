@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from movingfrf._basics.checks import Fault, ParameterError, nearest, shown
+from movingfrf._basics.checks import Fault, ParameterError, checking, nearest, shown
 from movingfrf._basics.toml_file import tables_of, text_of
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.response.line import require_record
@@ -41,8 +41,11 @@ def read_scenario(file: str | Path) -> Scenario:
     ------
     ScenarioError
         With everything that is wrong with the file.
+    ValueError
+        If it is no name of a file.
     """
-    path = Path(file)
+    with checking() as check:
+        path = check.file("file", file)
     return parse_scenario(_text(path), name=path.stem, source=str(path), folder=path.parent)
 
 

@@ -12,7 +12,7 @@ from movingfrf._basics.matlab_file import LEVEL_5
 from movingfrf._basics.version import VERSION
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
 
     import xarray as xr
 
@@ -21,19 +21,26 @@ def made(result: xr.Dataset) -> bytes:
     """Write every variable under its name, as it is in the result.
 
     Beside them stand the structures `units`, `long_name` and `dimensions`, which say of each what it is, and
-    `settings`, how the result was made. Texts, as names of degrees of freedom, are cells.
+    `settings`, how the result was made. Texts, as names of degrees of freedom, are cells. The response in the finer
+    steps in which it was solved is there too, as `solved_time` and so on, where the result keeps it.
     """
     from scipy.io import savemat
 
     variables = {str(name): variable for name, variable in result.variables.items()}
-    content: dict[str, Any] = {name: _array(variable.values) for name, variable in variables.items()}
-    told = {name: variable.attrs for name, variable in variables.items()}
-    content["units"] = {name: said.get("units", said.get("comment", "1")) for name, said in told.items()}
-    content["long_name"] = {name: said.get("long_name", name) for name, said in told.items()}
-    content["dimensions"] = {name: ", ".join(map(str, each.dims)) for name, each in variables.items()}
-    content["settings"] = {str(name): value for name, value in result.attrs.items()}
+    content: dict[str, Any] = {
+        "units": {
+            name: each.attrs.get("units", each.attrs.get("comment", "1")) for name, each in variables.items()
+        },
+        "long_name": {name: each.attrs.get("long_name", name) for name, each in variables.items()},
+        "dimensions": {name: ", ".join(map(str, each.dims)) for name, each in variables.items()},
+    }
+    # A variable that is called as a structure gives way to it, and is called so within them too.
+    names = valid_names(variables, taken=(*content, "settings"))
+    content = {which: {names[name]: said for name, said in texts.items()} for which, texts in content.items()}
+    content["settings"] = {valid: result.attrs[name] for name, valid in valid_names(map(str, result.attrs)).items()}
+    content |= {names[name]: _array(variable.values) for name, variable in variables.items()}
     file = io.BytesIO()
-    savemat(file, _named(content), do_compression=True, oned_as="column", long_field_names=True)
+    savemat(file, content, do_compression=True, oned_as="column", long_field_names=True)
     # What SciPy says at the head holds the time of day, and equal results have equal bytes.
     said = f"MATLAB 5.0 MAT-file, written by movingfrf {VERSION}".encode().ljust(LEVEL_5.header - 12)
     return said + file.getvalue()[len(said) :]
@@ -46,14 +53,20 @@ def _array(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     return values if values.dtype.kind == "c" else values.astype(float)
 
 
-def _named(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Give everything a name that MATLAB takes, in structures too."""
-    names = valid_names(content)
-    return {names[name]: _named(value) if isinstance(value, dict) else value for name, value in content.items()}
-
-
-def valid_names(names: Iterable[str]) -> dict[str, str]:
+def valid_names(names: Iterable[str], taken: Iterable[str] = ()) -> dict[str, str]:
     """Find a name in MATLAB for each: a letter, then letters, digits and low lines, at most 63, no two alike.
+
+    Parameters
+    ----------
+    names : iterable of str
+        The names.
+    taken : iterable of str
+        Names that something else has.
+
+    Returns
+    -------
+    dict of str to str
+        Name in MATLAB of each.
 
     Examples
     --------
@@ -61,13 +74,16 @@ def valid_names(names: Iterable[str]) -> dict[str, str]:
     {'time': 'time', '2nd wheel': 'x2nd_wheel', 'end': 'end_'}
     """
     found: dict[str, str] = {}
+    others = set(taken)
     for name in names:
         valid = re.sub(r"[^A-Za-z0-9_]", "_", name)
         valid = valid if re.match("[A-Za-z]", valid) else f"x{valid}"
         valid = f"{valid}_"[: LEVEL_5.longest_name] if valid in LEVEL_5.reserved else valid[: LEVEL_5.longest_name]
         number = 1
-        while valid in found.values():
+        stem = valid
+        while valid in others:
             number += 1
-            valid = f"{valid[: LEVEL_5.longest_name - 1 - len(str(number))]}_{number}"
+            valid = f"{stem[: LEVEL_5.longest_name - 1 - len(str(number))]}_{number}"
         found[name] = valid
+        others.add(valid)
     return found

@@ -10,8 +10,8 @@ import numpy as np
 
 from movingfrf._basics.undoing import scratch
 from movingfrf._basics.version import VERSION
-from movingfrf.results.exports.base import Column, Place, axis_of, columns
-from movingfrf.results.labels import SCHEMAS, kind_of
+from movingfrf.results.exports.base import Column, Place, axis_of, columns, dof_unit, units_of
+from movingfrf.results.labels import kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -94,10 +94,11 @@ def made(result: xr.Dataset) -> bytes:
 def _set(result: xr.Dataset, x: np.ndarray[Any, Any], column: Column) -> dict[str, Any]:
     """One dataset 58."""
     form, axis, kind = DATASET_58, axis_of(result), str(kind_of(result))
-    response, *sources = column.places
     upwards = column.variable.startswith("roughness")
-    turns = response.dim == "dof" and str(result.dof_unit.values[response.number]) == "rad"
-    reference = sources[0] if sources else Place("", 0, "NONE")
+    nowhere = Place("", 0, "NONE")
+    reference = next((place for place in column.places if place.dim == "source"), nowhere)
+    response = next((place for place in column.places if place.dim != "source"), nowhere)
+    turns = response.dim == "dof" and dof_unit(result, response.number) == "rad"
     return {
         "type": 58,
         "binary": 0,
@@ -106,15 +107,15 @@ def _set(result: xr.Dataset, x: np.ndarray[Any, Any], column: Column) -> dict[st
         "id4": f"movingfrf {VERSION}",
         "func_type": form.functions.get(kind, form.history),
         "rsp_ent_name": response.name[: form.letters],
-        "rsp_node": form.first_node.get(response.dim, form.other_nodes) + response.number,
+        "rsp_node": _node(response),
         "rsp_dir": form.scalar if turns else form.up if upwards else form.down,
         "ref_ent_name": reference.name[: form.letters],
-        "ref_node": form.first_node[reference.dim] + reference.number if sources else 0,
-        "ref_dir": form.up if sources else form.scalar,
+        "ref_node": _node(reference),
+        "ref_dir": form.up if reference.dim else form.scalar,
         "abscissa_spacing": int(np.ptp(np.diff(x)) <= 1e-6 * (x[1] - x[0])),
         "abscissa_spec_data_type": form.axes[axis],
         "abscissa_axis_lab": axis,
-        "abscissa_axis_units_lab": SCHEMAS[kind][axis].units,
+        "abscissa_axis_units_lab": units_of(result, axis),
         "ordinate_spec_data_type": form.data.get(column.variable.removesuffix("_density"), 0),
         "ordinate_axis_lab": _label(column.variable),
         "ordinate_axis_units_lab": column.units[:20],
@@ -129,3 +130,8 @@ def _label(variable: str) -> str:
     """Name a variable in as many whole words as the format has room for."""
     words = variable.replace("_density", "_PSD").replace("_", " ")
     return textwrap.shorten(words, DATASET_58.label, placeholder="") or words[: DATASET_58.label]
+
+
+def _node(place: Place) -> int:
+    """Number a place; 0 is none."""
+    return DATASET_58.first_node.get(place.dim, DATASET_58.other_nodes) + place.number if place.dim else 0

@@ -35,8 +35,8 @@ def taken_apart(path: Path, folder: Path, child: str, most: int, kind: str) -> A
     folder : Path
         Where the program writes what is in it, and `index.json` about that.
     child : str
-        Name of the program. It ends with status 4 where there is no room, with another where the file is damaged,
-        and then says why.
+        Name of the program. It ends with status 4 where it cannot write, with another where the file is damaged,
+        and says why.
     most : int
         What it may take, in the program's own terms.
     kind : str
@@ -52,7 +52,7 @@ def taken_apart(path: Path, folder: Path, child: str, most: int, kind: str) -> A
     ValueError
         If the file is damaged.
     OSError
-        If there is no room for what is in it.
+        If what is in it cannot be written into the folder.
     """
     program = str(Path(__file__).with_name(child))
     command = [sys.executable, "-P", program, str(path.resolve()), str(folder), str(most)]
@@ -60,10 +60,10 @@ def taken_apart(path: Path, folder: Path, child: str, most: int, kind: str) -> A
         done = carried_out(command, timeout=LIMITS.patience + path.stat().st_size / LIMITS.pace)
     except subprocess.TimeoutExpired:
         raise ValueError("is damaged: reading it comes to no end") from None
+    said = done.stderr.decode("utf-8", "replace").strip().splitlines()
     if done.returncode == 4:
-        raise OSError(errno.ENOSPC, f"there is no room to unpack it in {folder.parent}")
+        raise OSError(errno.ENOSPC, said[-1])
     index = folder / "index.json"
     if done.returncode or not index.exists():
-        said = done.stderr.decode("utf-8", "replace").strip().splitlines()
         raise ValueError(f"is damaged, or no {kind}: {said[-1] if said else 'the library fails on it'}")
     return json.loads(index.read_text(encoding="utf-8"))

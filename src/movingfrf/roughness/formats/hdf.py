@@ -54,7 +54,7 @@ def opened(path: Path) -> Iterator[HdfContents]:
     """
     size = _require_bounds(path)
     most = UNPACKING.most(size)
-    with scratch() as folder:
+    with scratch("unpacked") as folder:
         content = taken_apart(path, folder, "hdf_child.py", most, "HDF5 file")
         arrays = {
             item["name"]: Array(tuple(item["shape"]), partial(_load, folder / f"{n}.npy"), item["unit"])

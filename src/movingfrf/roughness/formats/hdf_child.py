@@ -2,7 +2,7 @@
 
 Arguments: the file, a folder to write into, and the most bytes that all arrays together may have. Writes each array
 of real numbers as 0.npy, 1.npy and so on, and index.json about them. What is wrong with the file goes to standard
-error, with exit status 3; 4 where the folder has no room.
+error, with exit status 3; 4 where it cannot write, and why.
 """
 
 from __future__ import annotations
@@ -128,7 +128,8 @@ def keep(place: Path, content: bytes | memoryview) -> None:
     """Write a file; NumPy would leave a part of it where the disk is full, and say nothing."""
     try:
         place.write_bytes(content)
-    except OSError:
+    except OSError as error:
+        print(error.strerror or error, file=sys.stderr)
         sys.exit(4)
 
 

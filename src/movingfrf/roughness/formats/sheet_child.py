@@ -2,17 +2,18 @@
 
 Arguments: the file, a folder to write into, and the most bytes that the process may take. Writes each sheet as
 0.txt, 1.txt and so on, a line for each row, and index.json with their names. What is wrong with the file goes to
-standard error.
+standard error, with exit status 3; 4 where it cannot write, and why.
 """
 
 from __future__ import annotations
 
 import csv
-import errno
 import json
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import python_calamine
 
@@ -30,11 +31,23 @@ def extract(file: Path, folder: Path) -> None:
     kept = [sheet.name for sheet in book.sheets_metadata if sheet.typ == python_calamine.SheetTypeEnum.WorkSheet]
     for n, name in enumerate(kept):
         sheet = book.get_sheet_by_name(name)
-        with (folder / f"{n}.txt").open("w", encoding="utf-8", newline="") as out:
+        with written(folder / f"{n}.txt") as out:
             out.write("\n" * (sheet.start[0] if sheet.start else 0))
             rows = csv.writer(out, delimiter="\t", lineterminator="\n")
             rows.writerows([text(cell) for cell in row] for row in sheet.iter_rows())
-    (folder / "index.json").write_text(json.dumps(kept), encoding="utf-8")
+    with written(folder / "index.json") as out:
+        json.dump(kept, out)
+
+
+@contextmanager
+def written(place: Path) -> Iterator[TextIO]:
+    """Open a file to write; what goes wrong with it is no fault of the spreadsheet."""
+    try:
+        with place.open("w", encoding="utf-8", newline="") as out:
+            yield out
+    except OSError as error:
+        print(error.strerror or error, file=sys.stderr)
+        sys.exit(4)
 
 
 def limit(most: int) -> None:
@@ -51,7 +64,5 @@ if __name__ == "__main__":
     try:
         extract(Path(sys.argv[1]), Path(sys.argv[2]))
     except (python_calamine.CalamineError, OSError, ValueError, MemoryError) as error:
-        if getattr(error, "errno", None) == errno.ENOSPC:
-            sys.exit(4)
         print(" ".join(str(error).split()) or "it takes too much memory", file=sys.stderr)
         sys.exit(3)

@@ -77,7 +77,7 @@ def _texts(path: Path) -> list[tuple[str, bytes]]:
             raise ValueError(f"is damaged, or no spreadsheet: {error}") from None
         if unpacked > UNPACKING.most(size):
             raise ValueError(f"unpacks to more than {UNPACKING.times} times its size: unpack it elsewhere first")
-    with scratch() as folder:
+    with scratch("unpacked") as folder:
         most = 2**31 + 100 * size  # memory of a program that holds all cells [byte; a convention]
         names = taken_apart(path, folder, "sheet_child.py", most, "spreadsheet")
         return [(name, (folder / f"{n}.txt").read_bytes()) for n, name in enumerate(names)]
