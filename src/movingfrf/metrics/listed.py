@@ -157,9 +157,12 @@ FORCES = Table(
         ),
         Entry("1/s", random=OfRandom("lift-offs", _variable("lift_off_rate"), SOURCES.crossings, "load")),
         Entry(
+            "1",
+            OfHistory("share of time without contact", lambda of, n: of.loss.share[n]),
+        ),
+        Entry(
             "%",
-            OfHistory("share of time without contact", lambda of, n: 100 * of.loss.share[n]),
-            OfRandom("share lifted off", lambda of, n: 100 * of.value("lift_off_share", n), quantity="load"),
+            random=OfRandom("share lifted off", lambda of, n: 100 * of.value("lift_off_share", n), quantity="load"),
         ),
         Entry("s", OfHistory("longest loss of contact", lambda of, n: of.loss.longest[n])),
         Entry(
