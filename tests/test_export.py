@@ -140,7 +140,8 @@ def test_universal_file(results, kind, tmp_path):
         for column in variable.values.reshape(variable.shape[0], -1).T:
             read = next(sets)
             label = read["ordinate_axis_lab"]
-            assert name.replace("_density", "_PSD").replace("_", " ").startswith(label)
+            whole = name.replace("_density", "_PSD").split("_")
+            assert label.split() == whole[: len(label.split())]
             assert 0 < len(label) <= 20
             assert name.replace("_", " ") in read["id1"]
             np.testing.assert_allclose(read["data"], column, rtol=1e-11)
@@ -380,3 +381,11 @@ def test_one_unit_where_all_degrees_of_freedom_have_one():
     found = mf.transfer(ROAD, car, speed=10.0, frequency=[1.0, 2.0])
     assert found.motion.attrs["units"] == "m/m"
     assert found.acceleration.attrs["units"] == "1/s2"
+
+
+def test_labels_of_universal_files_end_with_a_word():
+    from movingfrf.results.exports.universal import _label
+
+    assert _label("contact_force_density") == "contact force PSD"
+    assert _label("acceleration_of_the_left_mirror") == "acceleration of the"
+    assert _label("x" * 30) == "x" * 20

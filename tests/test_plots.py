@@ -248,7 +248,7 @@ REFUSED = {
         "interval must be two",
     ),
     "no such contact": (lambda o: plots.contact_forces(o.result, o.ax, contacts=-1), "contacts .* got -1"),
-    "true": (lambda o: plots.contact_forces(o.result, o.ax, contacts=[True]), "contacts must .* got True"),
+    "true": (lambda o: plots.contact_forces(o.result, o.ax, contacts=[False]), "contacts must .* got False"),
     "no such name": (
         lambda o: plots.contact_force_spectra(o.random, o.ax, contacts="reer"),
         r"contacts must be among 0 \(front\), 1 \(rear\), got 'reer' \(did you mean 'rear'\?\)",
