@@ -189,8 +189,11 @@ def test_nothing_is_replaced_unasked(results, tmp_path, capsys):
     target = tmp_path / "mine.csv"
     target.write_text("mine")
     assert main(["export", str(tmp_path / "result.nc"), str(target)]) == 2
-    assert "mine.csv exists; choose another name, or replace it with `force` (on the command line --force)" in capsys.readouterr().err
-    with pytest.raises(ValueError, match="mine.csv exists; choose another name, or replace it with `force`"):
+    assert (
+        "mine.csv exists; choose another name, or replace it with `force` (on the command line --force)"
+        in capsys.readouterr().err
+    )
+    with pytest.raises(ValueError, match=r"mine.csv exists; choose another name, or replace it with `force`"):
         mf.export(results["loaded"], target)
     assert target.read_text() == "mine"
     assert main(["export", str(tmp_path / "result.nc"), str(target), "--force"]) == 0

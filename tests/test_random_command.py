@@ -34,7 +34,7 @@ def test_three_files_that_say_the_same(tmp_path, capsys):
     told = capsys.readouterr().out
     for words in (
         "; one road under all wheels",
-        "contact 0 force",
+        "contact 0 (front) force",
         "coefficient",
         "bounce acceleration",
         "pitch acceleration",

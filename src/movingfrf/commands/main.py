@@ -69,8 +69,13 @@ def main(arguments: list[str] | None = None) -> int:
         said = _failed(OSError(errno.EPIPE, os.strerror(errno.EPIPE), StandardStream.OUTPUT))
     if not said:
         return Status.DONE
+    said = f"movingfrf: {said}"
     with suppress(OSError):
-        print(f"movingfrf: {said}", file=sys.stderr)
+        if sys.stderr.isatty():
+            from movingfrf.commands.console import for_reading
+
+            said = for_reading(said, sys.stderr)
+        print(said, file=sys.stderr)
     return Status.REFUSED
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import shown, spelt
 from movingfrf._basics.wording import evenly_spread, some_of
+from movingfrf.results.labels import contacts_in_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -123,13 +124,9 @@ def contact_curves(result: xr.Dataset, contacts: Sequence[int] | None = None) ->
     """
     position, path = result.position.values, result.path.values
     several_paths = len(np.unique(path)) > 1
-    called = result.contact_name.values.tolist() if "contact_name" in result.coords else [""] * len(path)
     names = [
-        f"contact {number}"
-        + (f" ({called[number]})" if called[number] else "")
-        + f" at {_signed(place)} m"
-        + (f", path {path[number]}" if several_paths else "")
-        for number, place in enumerate(position)
+        f"{called} at {_signed(place)} m" + (f", path {along}" if several_paths else "")
+        for called, place, along in zip(contacts_in_words(result), position, path, strict=True)
     ]
     return _curves(names, contacts)
 

@@ -28,7 +28,9 @@ def made(result: xr.Dataset) -> bytes:
 
     variables = {str(name): variable for name, variable in result.variables.items()}
     content: dict[str, Any] = {
-        "units": {name: each.attrs.get("units", each.attrs.get("comment", "1")) for name, each in variables.items()},
+        "units": {
+            name: each.attrs.get("units", each.attrs.get("comment", "1")) for name, each in variables.items()
+        },
         "long_name": {name: each.attrs.get("long_name", name) for name, each in variables.items()},
         "dimensions": {name: ", ".join(map(str, each.dims)) for name, each in variables.items()},
     }

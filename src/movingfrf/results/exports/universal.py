@@ -124,5 +124,5 @@ def _set(result: xr.Dataset, x: np.ndarray[Any, Any], column: Column) -> dict[st
 
 
 def _node(place: Place) -> int:
-    """Number a place; 0 is none."""
+    """Give a place its number; 0 is none."""
     return DATASET_58.first_node.get(place.dim, DATASET_58.other_nodes) + place.number if place.dim else 0
