@@ -116,13 +116,13 @@ FAULTS = [
     Fault("computed each time", "_basics/remembered.py", "if name not in implied:", "if True:"),
     # Results for other programs.
     Fault("radians for metres", "results/labels.py", 'if dof_unit == "rad" else 0', 'if dof_unit == "m" else 0'),
-    Fault("real part twice", "results/exports/columns.py", "= column.values.imag", "= column.values.real"),
+    Fault("real part twice", "results/exports/columns.py", "column.values.imag))", "column.values.real))"),
     Fault("road upside down", "results/exports/universal.py", "form.up if upwards", "form.down if upwards"),
     Fault(
         "two places at one node",
         "results/exports/universal.py",
-        "(response.dim, form.other_nodes) + response.number",
-        "(response.dim, form.other_nodes)",
+        "DATASET_58.other_nodes) + place.number",
+        "DATASET_58.other_nodes)",
     ),
     Fault(
         "time of day in MATLAB's head",
