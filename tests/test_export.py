@@ -197,7 +197,7 @@ def test_nothing_is_replaced_unasked(results, tmp_path, capsys):
         "mine.csv exists; choose another name, or replace it with `force` (on the command line --force)"
         in capsys.readouterr().err
     )
-    with pytest.raises(ValueError, match="mine.csv exists; choose another name, or replace it with `force`"):
+    with pytest.raises(ValueError, match=r"mine.csv exists; choose another name, or replace it with `force`"):
         mf.export(results["loaded"], target)
     assert target.read_text() == "mine"
     assert main(["export", str(tmp_path / "result.nc"), str(target), "--force"]) == 0

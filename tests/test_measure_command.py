@@ -42,7 +42,10 @@ def test_table(result, file, capsys):
     assert main(["measure", str(file)]) == 0
     told = capsys.readouterr().out
     for measure in mf.assess(result):
-        assert measure.quantity in told
+        named = re.sub(
+            r"^contact (\d)", lambda found: f"{found[0]} ({'front rear'.split()[int(found[1])]})", measure.quantity
+        )
+        assert named in told
         assert f"{measure.name} " in told
         assert f"{measure.value:.4g}" in told
     assert "…" not in told

@@ -34,7 +34,7 @@ def test_three_files_that_say_the_same(tmp_path, capsys):
     told = capsys.readouterr().out
     for words in (
         "Spectrum: ISO 8608 class A, 1.6e-05 m³ at 0.1 cycle/m, waviness 2, 0.01 to 6 cycle/m; one road under all",
-        "contact 0 force",
+        "contact 0 (front) force",
         "coefficient",
         "bounce acceleration",
         "pitch acceleration",

@@ -18,11 +18,13 @@ import pytest
 import movingfrf as mf
 from movingfrf._basics.wording import Standing, count, in_both_units
 from movingfrf.commands.console import _head, _pieces, wrapped
+from movingfrf.commands.main import main
 from movingfrf.reports.tables import Column
 from movingfrf.results.findings import contact_lost
+from movingfrf.results.labels import contacts_in_words
 from movingfrf.scenarios.description import described
 from movingfrf.scenarios.reading import parse_scenario
-from movingfrf.scenarios.scenario import Drive
+from movingfrf.scenarios.scenario import Drive, ScenarioError
 from movingfrf.scenarios.template import template
 from movingfrf.scenarios.unusual import USUAL, unusual
 from movingfrf.vehicles.catalogue import CATALOGUE
@@ -305,8 +307,8 @@ def test_heads_break_between_words_and_keep_a_number_with_its_unit():
             assert "(95\n" not in head
 
 
-def on_terminal(arguments, folder, columns=80):
-    """Run a command on a terminal so many letters wide, and return its lines."""
+def on_terminal(arguments, folder, columns=80, status=0):
+    """Run a command on a terminal so many letters wide, and return its lines; of one that refuses, what it says."""
     pty = pytest.importorskip("pty")
     import fcntl
     import termios
@@ -315,7 +317,8 @@ def on_terminal(arguments, folder, columns=80):
     fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
     environment = {**os.environ, "TERM": "xterm", "COLUMNS": str(columns)}
     command = [sys.executable, "-m", "movingfrf", *arguments]
-    with subprocess.Popen(command, stdout=its, stderr=subprocess.DEVNULL, cwd=folder, env=environment) as process:
+    streams = {"stderr" if status else "stdout": its, "stdout" if status else "stderr": subprocess.DEVNULL}
+    with subprocess.Popen(command, **streams, cwd=folder, env=environment) as process:
         os.close(its)
         said = b""
         while True:
@@ -326,9 +329,24 @@ def on_terminal(arguments, folder, columns=80):
             if not more:
                 break
     os.close(ours)
-    assert process.returncode == 0, said
+    assert process.returncode == status, said
     plain = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", said.decode())
     return [line.rstrip("\r").rpartition("\r")[2] for line in plain.split("\n")]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
+def test_refusals_are_no_wider_than_a_terminal_either(tmp_path):
+    """Between words, all faults of a file in lines of their own; where nobody reads, as they are."""
+    wrong = TRUCK.replace("duration = 24.0", "duration = -1.0").replace('kind = "half_car"', 'kind = "half_truck"')
+    (tmp_path / "truck.toml").write_text(wrong, encoding="utf-8")
+    (tmp_path / "road.csv").write_text("distance [m],elevation [m]\n" + "".join(f"{x},\n" for x in range(99)))
+    for arguments in (["check", "truck.toml"], ["profile", "road.csv"]):
+        lines = on_terminal(arguments, tmp_path, status=2)
+        assert max(map(len, lines)) <= 80
+        whole = [sys.executable, "-m", "movingfrf", *arguments]
+        plain = subprocess.run(whole, capture_output=True, text=True, cwd=tmp_path, check=False).stderr
+        assert max(map(len, plain.splitlines())) > 80
+        assert " ".join(lines).split() == plain.split()
 
 
 @pytest.mark.slow
@@ -365,3 +383,63 @@ def test_help_has_no_option_for_an_empty_list(capsys):
     for command in ("measure", "profile", "convert", "random", "run", "compare"):
         assert main([command, "--help"]) == 0
         assert "--empty" not in capsys.readouterr().out
+
+
+# Contacts by number and name, wherever they are read.
+
+RAIL = mf.track(mf.EulerBernoulliBeam(1.573e7, 711.9), mf.Spring(8e6, 3e4))
+
+
+def test_contacts_have_their_names_on_a_console(tmp_path, capsys):
+    text = TRUCK.replace("duration = 24.0", "duration = 0.5").replace("time_step = 0.001", "time_step = 0.05")
+    (tmp_path / "truck.toml").write_text(text, encoding="utf-8")
+    assert main(["run", str(tmp_path / "truck.toml"), "--no-report", "-o", str(tmp_path / "out")]) == 0
+    told = capsys.readouterr().out
+    assert "contact 0 (front) force" in told
+    assert "contact 1 (rear) force" in told
+    assert "contact 0 force" not in told
+    assert main(["measure", str(tmp_path / "out" / "result.nc"), "--slope", "4", "--contact", "1"]) == 0
+    assert "contact 1 (rear) deflection" in capsys.readouterr().out
+    # What programs look up stays.
+    kept = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))["measures"]
+    assert {"contact 0 force", "contact 1 force"} <= {measure["quantity"] for measure in kept}
+
+
+def test_contacts_have_their_names_in_findings_and_faults():
+    road = mf.harmonic(amplitude=0.0002, wavelength=0.4, length=60.0, start=-20.0)
+    given = {"speed": 20.0, "duration": 1.0, "time_step": 0.05}
+    with pytest.warns(
+        mf.ValidityWarning, match=r"square of the force of contact 0 \(wheelset 1\) lies above 10 Hz"
+    ):
+        mf.simulate(RAIL, mf.wheelset(1800.0), road, **given)
+    with pytest.warns(mf.ValidityWarning):
+        result = mf.simulate(RAIL, mf.catalogue("half_truck"), road, **given)
+    assert contacts_in_words(result.isel(contact=[1])) == ["contact 1 (rear)"]
+    assert contacts_in_words(result.drop_vars("contact_name")) == ["contact 0", "contact 1"]
+    broken = result.copy(deep=True)
+    broken.contact_force[3, 1] = float("nan")
+    with pytest.raises(ValueError, match=r"contact_force nan at time 0.15 s, contact 1 \(rear\)"):
+        mf.dynamic_load_coefficient(broken)
+
+
+def test_contacts_have_their_names_in_captions():
+    from movingfrf.reports.coupled import _deflections_figure, _forces_figure
+
+    road = mf.realise(mf.IsoRoad.of_class("B"), 100.0, seed=1)
+    result = mf.simulate(RAIL, mf.catalogue("half_truck"), road, speed=10.0, duration=2.0, start=20.0)
+    for figure in (_forces_figure, _deflections_figure):
+        assert re.search(r" under contact \d \((front|rear)\) at ", figure(result).caption)
+
+
+@pytest.mark.parametrize("name", ["half_truck", "Manchester-Coach"])
+def test_a_vehicle_of_the_catalogue_is_no_kind(name):
+    known = name.lower().replace("-", "_")
+    for text, place in (
+        (TRUCK.replace('kind = "half_car"', f'kind = "{name}"'), "vehicle.kind"),
+        (TRAIN.replace('kind = "catalogue"', f'kind = "{name}"'), "vehicle.car.kind"),
+    ):
+        with pytest.raises(ScenarioError) as refused:
+            parse_scenario(text)
+        said = str(refused.value)
+        assert f"{place} must be one of " in said
+        assert f'got {name!r}, which is in the catalogue: kind = "catalogue", name = "{known}"' in said

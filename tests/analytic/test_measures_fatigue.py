@@ -280,7 +280,7 @@ def test_scales():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_lines(method):
-    """One line is a narrow band by every method, ν₀ (√2 σ)^m Γ(1 + m/2), wherever it stands; at 0 Hz all is at rest."""
+    """One line is a narrow band by every method, ν₀ (√2 σ)^m Γ(1 + m/2); one at 0 Hz is at rest."""
     for f, density, nu in (
         ([1.0, 2.0, 3.0], [0.0, 1.0, 0.0], 2.0),
         ([1.0, 2.0], [0.0, 2.0], 2.0),

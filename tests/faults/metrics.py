@@ -113,6 +113,14 @@ FAULTS = [
     Fault(
         "damage beyond a Gaussian process", "metrics/fatigue.py", "if not 0 < share <= 1 + rounding:", "if False:"
     ),
+    Fault("line that is no narrow band", "metrics/fatigue.py", "if irregularity < 1 - line", "if True"),
+    Fault("damage at rest", "metrics/fatigue.py", "if not moment(2):", "if False:"),
+    Fault(
+        "running rms of the run-in",
+        "metrics/comfort.py",
+        "squares = histories[samples_before(since, time_step, len(histories)) :]",
+        "squares = histories",
+    ),
     Fault("damage of a negative life", "metrics/fatigue.py", "if not 0 < share <= 1", "if not share <= 1"),
     Fault("impact without the load", "metrics/impact.py", "high = load +", "high ="),
     Fault("median impact of a random road", "metrics/impact.py", "inv_cdf(CUSTOMARY / 100)", "inv_cdf(0.5)"),

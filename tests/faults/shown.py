@@ -135,13 +135,13 @@ FAULTS = [
     Fault("computed each time", "_basics/remembered.py", "if name not in implied:", "if True:"),
     # Results for other programs.
     Fault("radians for metres", "results/labels.py", 'if dof_unit == "rad" else 0', 'if dof_unit == "m" else 0'),
-    Fault("real part twice", "results/exports/columns.py", "= column.values.imag", "= column.values.real"),
+    Fault("real part twice", "results/exports/columns.py", "column.values.imag))", "column.values.real))"),
     Fault("road upside down", "results/exports/universal.py", "form.up if upwards", "form.down if upwards"),
     Fault(
         "two places at one node",
         "results/exports/universal.py",
-        "(response.dim, form.other_nodes) + response.number",
-        "(response.dim, form.other_nodes)",
+        "DATASET_58.other_nodes) + place.number",
+        "DATASET_58.other_nodes)",
     ),
     Fault(
         "time of day in MATLAB's head",
@@ -149,7 +149,34 @@ FAULTS = [
         "return said + file.getvalue()[len(said) :]",
         "return file.getvalue()",
     ),
-    Fault("names alike in MATLAB", "results/exports/matlab.py", "while valid in found.values():", "while False:"),
+    Fault("names alike in MATLAB", "results/exports/matlab.py", "while valid in others:", "while False:"),
+    Fault(
+        "variable lost to a structure", "results/exports/matlab.py", 'taken=(*content, "settings"))', "taken=())"
+    ),
+    Fault(
+        "part without its names",
+        "results/exports/base.py",
+        "in variable.dims or dim in result.coords]",
+        "in variable.dims]",
+    ),
+    Fault("dimensions in one order only", "results/exports/base.py", ".transpose(axis, ...)", ".transpose(...)"),
+    Fault(
+        "unit of another's",
+        "results/exports/base.py",
+        'attrs.get("units", label.units',
+        'attrs.get("x", label.units',
+    ),
+    Fault("numbers alone where they are read", "commands/console.py", "words.get(place, place)", "place"),
+    Fault("contact without its name", "results/labels.py", 'f" ({name})" if name else "" for', '"" for'),
+    Fault(
+        "entry of the catalogue taken for no word",
+        "scenarios/reading.py",
+        'if "catalogue" in kinds and',
+        "if False and",
+    ),
+    Fault("refusal wider than a terminal", "commands/main.py", "if sys.stderr.isatty():", "if False:"),
+    Fault("the same fault twice", "metrics/comfort.py", "if len(check.faults) > before:", "if False:"),
+    Fault("message of several lines", "_basics/door.py", '" ".join(text.split())', "text"),
     Fault("file replaced unasked", "results/export.py", "if file.exists() and not force:", "if False:"),
     Fault("complex numbers in CF", "results/labels.py", "return real and all(", "return all("),
     # What is drawn and chosen, and how it is refused.

@@ -48,5 +48,18 @@ FAULTS = [
     Fault("nothing written, though it was", "_basics/ending.py", "if placed else", "if not placed else"),
     Fault("half a set", "_basics/output.py", "with undisturbed():", "with suppress(ValueError):"),
     Fault("interrupt that is swallowed", "_basics/undoing.py", "signal.raise_signal(got)", "int(got)"),
+    Fault(
+        "folder that nobody knows",
+        "_basics/undoing.py",
+        "raise OSError(error.errno, said)",
+        "raise OSError(error.errno, said, str(folder))",
+    ),
+    Fault(
+        "full disk taken for a damaged sheet",
+        "roughness/formats/sheet_child.py",
+        "        sys.exit(4)",
+        "        sys.exit(3)",
+    ),
+    Fault("nameless export", "results/export.py", "with naming(file):", "with naming(Path()):"),
     Fault("child that runs on", "_basics/undoing.py", "undone(process.kill)", "undone(int)"),
 ]

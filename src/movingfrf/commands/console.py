@@ -10,7 +10,7 @@ import sys
 import textwrap
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -74,6 +74,11 @@ def plain_console() -> _Worded:
     if not console.is_terminal:
         console.width = LAYOUT.piped
     return console
+
+
+def for_reading(text: str, stream: TextIO) -> str:
+    """Break the lines of a text between words, as wide as a terminal is."""
+    return wrapped(text, Console(file=stream).width)
 
 
 def hand_out(text: str) -> None:
@@ -162,6 +167,19 @@ def measures_in_lines(found: Sequence[Measure]) -> Table:
     return Table("", "", [Column("value", ""), Column("unit", "", words=True), Column("by", "", words=True)], rows)
 
 
+def with_names(result: xr.Dataset, found: Sequence[Measure]) -> list[Measure]:
+    """Call contacts by their names too, as findings do, where measures are read and not looked up."""
+    from movingfrf.results.labels import contacts_in_words
+
+    called = contacts_in_words(result) if "contact" in result.dims else []
+    words = {f"contact {number}": each for number, each in enumerate(called)}
+    said = []
+    for measure in found:
+        place, _, kind = measure.quantity.rpartition(" ")
+        said.append(measure._replace(quantity=f"{words.get(place, place)} {kind}".strip()))
+    return said
+
+
 def measures_in_rows(found: Sequence[Measure]) -> list[Table]:
     """Put measures into tables: one for all quantities that were measured alike, with a row for each."""
     from movingfrf.reports.tables import Column, Row, Table
@@ -179,7 +197,7 @@ def measures_in_rows(found: Sequence[Measure]) -> list[Table]:
 
 def print_result(console: Console, result: xr.Dataset, found: Sequence[Measure]) -> None:
     """Print measures and findings."""
-    print_tables(console, measures_in_rows(found))
+    print_tables(console, measures_in_rows(with_names(result, found)))
     print_findings(console, [finding["message"] for finding in json.loads(result.attrs["findings"])])
 
 

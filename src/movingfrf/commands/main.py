@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import os
-import shutil
 import sys
 from contextlib import suppress
 
@@ -70,12 +69,12 @@ def main(arguments: list[str] | None = None) -> int:
         pass  # so does rich end a process where nobody reads what it prints
     if not said:
         return Status.DONE
+    said = f"movingfrf: {said}"
     with suppress(OSError):
-        said = f"movingfrf: {said}"
         if sys.stderr.isatty():
-            from movingfrf.commands.console import wrapped
+            from movingfrf.commands.console import for_reading
 
-            said = wrapped(said, shutil.get_terminal_size().columns)
+            said = for_reading(said, sys.stderr)
         print(said, file=sys.stderr)
     return Status.REFUSED
 

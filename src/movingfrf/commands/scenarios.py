@@ -19,6 +19,7 @@ from movingfrf.commands.console import (
     print_findings,
     print_result,
     print_table,
+    with_names,
 )
 
 if TYPE_CHECKING:
@@ -322,8 +323,9 @@ def measure(
     result = load(file)
     found = assess(result, contacts=contact, dofs=dof, weighting=weighting, slope=slope, since=since)
     console = plain_console()
-    print_table(console, measures_in_lines(found))
-    notes = [f"{taken.quantity}, {taken.name}: {taken.note}" for taken in found if taken.note]
+    named = with_names(result, found)
+    print_table(console, measures_in_lines(named))
+    notes = [f"{taken.quantity}, {taken.name}: {taken.note}" for taken in named if taken.note]
     if notes:
         console.print("\nNotes", style="bold")
     for note in notes:

@@ -20,7 +20,7 @@ from movingfrf.reports.figures import SIZE, Illustration, blank, illustrated, pa
 from movingfrf.reports.frf import frf_figures
 from movingfrf.reports.tables import Table, measure_tables
 from movingfrf.reports.ways import is_stepped, stands_still, stepped_road, way
-from movingfrf.results.labels import duration_of, speed_in_words
+from movingfrf.results.labels import contacts_in_words, duration_of, speed_in_words
 from movingfrf.roughness.fitting import fit_iso
 
 if TYPE_CHECKING:
@@ -141,13 +141,14 @@ def _class_words(result: xr.Dataset) -> str:
     if "spectrum" in result.attrs:
         return f"It was made from a spectrum, so none is fitted: {result.attrs['spectrum']}."
     said = []
+    called = contacts_in_words(result)
     for contact in foremost(result):
         fit = fit_iso(*elevation_spectrum(result, contact))
         if fit.reason:
-            said.append(f"Under contact {contact} no class is fitted: {fit.reason}.")
+            said.append(f"Under {called[contact]} no class is fitted: {fit.reason}.")
             continue
         said.append(
-            f"The fit under contact {contact} (dashed, over {fit.covered}) gives "
+            f"The fit under {called[contact]} (dashed, over {fit.covered}) gives "
             f"{number(fit.roughness, 3)} m³ at 0.1 cycle/m with waviness "
             f"{number(fit.waviness, 3)}; with the waviness 2 of the standard "
             f"{number(fit.roughness_at_two, 3)} m³, class {fit.road_class}"
@@ -174,10 +175,11 @@ def _forces_figure(result: xr.Dataset) -> Illustration:
         [curve.name for curve in curves],
     )
     peak, instant, contact = _peak_force(result)
+    under = contacts_in_words(result)[contact]
     level = "level at the beginning" if stands_still(result) else "static level about which they vary"
     words = f"Total contact forces; dashed, the {level}. "
     words += (
-        f"The largest dynamic force, {number(1e-3 * peak)} kN, acts under contact {contact} at {instant:.6g} s. "
+        f"The largest dynamic force, {number(1e-3 * peak)} kN, acts under {under} at {instant:.6g} s. "
         "Contact is lost where a force falls below zero."
         if peak
         else "The road is smooth, so the forces stay at their static level."
@@ -210,9 +212,9 @@ def _zoom_figures(result: xr.Dataset) -> list[Illustration]:
         line.set_linewidth(1.5)
     legend_above(ax)
     caption = (
-        f"The {number(window, 2)} s around the largest dynamic force ({number(1e-3 * peak)} kN under contact "
-        f"{contact}), there and under the nearest contact of the same path. They meet the same spot one after the "
-        "other: look for the same event with its delay. "
+        f"The {number(window, 2)} s around the largest dynamic force ({number(1e-3 * peak)} kN under "
+        f"{contacts_in_words(result)[contact]}), there and under the nearest contact of the same path. They meet "
+        "the same spot one after the other: look for the same event with its delay. "
         f"Dashed: the {'levels at the beginning' if stands_still(result) else 'static levels'}."
     )
     return [illustrated("zoom", "Contact forces around the peak", caption, figure)]
@@ -263,7 +265,7 @@ def _deflections_figure(result: xr.Dataset) -> Illustration:
     sag = "that at the beginning" if stands_still(result) else "the sag in steady travel on the smooth road"
     caption = (
         f"Deflection of the road under each contact, positive down; dashed, {sag}. The largest, "
-        f"{number(1e3 * float(deflection[place, contact]))} mm, occurs under contact {contact} "
+        f"{number(1e3 * float(deflection[place, contact]))} mm, occurs under {contacts_in_words(result)[contact]} "
         f"at {result.time.values[place]:.6g} s."
     )
     caption += wording.some_of(result.sizes["contact"], wording.MOST_CURVES, "contacts")

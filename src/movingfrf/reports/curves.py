@@ -11,7 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.wording import evenly_spread, some_of
-from movingfrf.results.labels import contact_names
+from movingfrf.results.labels import contacts_in_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -129,15 +129,11 @@ def contact_curves(result: xr.Dataset, contacts: Chosen | None = None) -> list[C
     """
     position, path = result.position.values, result.path.values
     several_paths = len(np.unique(path)) > 1
-    called = contact_names(result)
     names = [
-        f"contact {number}"
-        + (f" ({called[number]})" if called[number] else "")
-        + f" at {_signed(place)} m"
-        + (f", path {path[number]}" if several_paths else "")
-        for number, place in enumerate(position)
+        f"{called} at {_signed(place)} m" + (f", path {along}" if several_paths else "")
+        for called, place, along in zip(contacts_in_words(result), position, path, strict=True)
     ]
-    return _curves("contacts", names, contacts, called)
+    return _curves("contacts", names, contacts, contact_names(result))
 
 
 def point_curves(result: xr.Dataset, points: Chosen | None = None) -> list[Curve]:

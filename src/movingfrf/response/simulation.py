@@ -183,7 +183,10 @@ def driven(
     beyond = driven_by.line.padded // 2 + 1
     hidden = find.not_shown(
         shares_beyond(response, driven_by.omega, beyond),
-        [*(f"contact force {n}" for n in wheels), *(f"acceleration of {name}" for name in vehicle.dof_names)],
+        [
+            *(f"force of {vehicle.standing.listed([n])}" for n in wheels),
+            *(f"acceleration of {name}" for name in vehicle.dof_names),
+        ],
         journey.time_step,
     )
     # What is measured, and whether contact is kept, is taken from the response in the steps in which it was solved.

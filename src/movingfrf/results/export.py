@@ -20,7 +20,7 @@ def export(result: xr.Dataset, file: str | Path, *, force: bool = False) -> None
 
     `.csv`: a line a time or frequency, a column for each contact, degree of freedom, load and point, with units in
     the heads, as `contact force front [N]`, and of a journey the distance of the vehicle; complex numbers as two
-    columns. `.mat`: every variable under its name, beside them the structures `units`, `long_name`, `dimensions` and
+    columns. `.mat`: every variable under its name, and the structures `units`, `long_name`, `dimensions` and
     `settings`. `.uff`: a universal file with a dataset 58 for each column, named, with units, directions and its
     function type; 12 digits, 6 of the step. A result itself is netCDF: `result.to_netcdf(file, engine="h5netcdf")`.
 

@@ -337,12 +337,7 @@ def flaws(result: xr.Dataset, names: Iterable[str]) -> list[str]:
         values = result[name].values
         bad = np.argwhere(~np.isfinite(values))
         if bad.size:
-            where = [
-                f"{dim} {result[dim].values[at]:g} {result[dim].attrs.get('units', '')}".removesuffix(" 1").rstrip()
-                if result[dim].dtype.kind in "iuf"
-                else f"{dim} {result[dim].values[at]}"
-                for dim, at in zip(result[name].dims, bad[0], strict=True)
-            ]
+            where = [_where(result, str(dim), at) for dim, at in zip(result[name].dims, bad[0], strict=True)]
             found.append(f"has {name} {values[tuple(bad[0])]} at {', '.join(where)}")
     return found
 
@@ -351,6 +346,34 @@ def contact_names(result: xr.Dataset) -> list[str]:
     """Names of the contacts; empty where they have none."""
     named = "contact_name" in result.coords
     return [str(name) for name in result.contact_name.values] if named else [""] * result.sizes["contact"]
+
+
+def _where(result: xr.Dataset, dim: str, at: int) -> str:
+    """Say where along a dimension something is."""
+    if dim == "contact":
+        return contacts_in_words(result)[at]
+    place = result[dim].values[at]
+    if result[dim].dtype.kind not in "iuf":
+        return f"{dim} {place}"
+    return f"{dim} {place:g} {result[dim].attrs.get('units', '')}".removesuffix(" 1").rstrip()
+
+
+def contacts_in_words(result: xr.Dataset) -> list[str]:
+    """Call each contact of a result by its number and, where it has one, its name.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        A result with contacts, whole or a part.
+
+    Returns
+    -------
+    list of str
+        Words such as `contact 1 (rear)`.
+    """
+    numbers = result["contact"].values.tolist()
+    called = [f" ({name})" if name else "" for name in contact_names(result)]
+    return [f"contact {number}{name}" for number, name in zip(numbers, called, strict=True)]
 
 
 def speed_in_words(result: xr.Dataset) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from movingfrf._basics.checks import Fault, ParameterError, checking, nearest, shown
+from movingfrf._basics.checks import Fault, ParameterError, checking, nearest, shown, spelt
 from movingfrf._basics.toml_file import tables_of, text_of
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.response.line import require_record
@@ -19,7 +19,7 @@ from movingfrf.scenarios.roads import Way
 from movingfrf.scenarios.scenario import Drive, Passage, Scenario, ScenarioError
 from movingfrf.scenarios.stepped import require_journey
 from movingfrf.stepping.finite_guideway import FiniteGuideway
-from movingfrf.vehicles.catalogue import catalogue
+from movingfrf.vehicles.catalogue import CATALOGUE, catalogue
 from movingfrf.vehicles.files import read_vehicle
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -249,6 +249,8 @@ class _Builder:
             self.faults.append(Fault(f"{path}.kind", f"is missing; it is one of {', '.join(kinds)}"))
         elif not isinstance(name, str) or name not in kinds:
             hint = nearest(str(name), kinds)
+            if "catalogue" in kinds and (entry := spelt(name, CATALOGUE)):
+                hint = f', which is in the catalogue: kind = "catalogue", name = "{entry}"'
             self.faults.append(Fault(f"{path}.kind", f"must be one of {', '.join(kinds)}, got {shown(name)}{hint}"))
         else:
             return kinds[name]

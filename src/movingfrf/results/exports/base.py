@@ -112,7 +112,7 @@ def _dims_of(result: xr.Dataset, name: str) -> tuple[str, ...]:
 
 
 def _place(result: xr.Dataset, dim: str, number: int) -> Place:
-    """Name a contact or a degree of freedom by its name, a point or a load by its position; a number where alike."""
+    """Name contacts and degrees of freedom by names, points and loads by positions, those alike by numbers."""
     if dim not in result.coords:
         return Place(dim, number, f"{dim} {number}")
     values = np.ravel(result[dim].values).tolist()

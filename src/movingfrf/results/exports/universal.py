@@ -133,5 +133,5 @@ def _label(variable: str) -> str:
 
 
 def _node(place: Place) -> int:
-    """Number a place; 0 is none."""
+    """Give a place its number; 0 is none."""
     return DATASET_58.first_node.get(place.dim, DATASET_58.other_nodes) + place.number if place.dim else 0
