@@ -329,8 +329,8 @@ FAULTS = [
         "or not target.resolve().is_relative_to(path.parent.resolve())",
         "or False",
     ),
-    Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
-    Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
+    Fault("gaps filled unasked", "roughness/gaps.py", "if longest is None:", "if False:"),
+    Fault("gaps of any length filled", "roughness/gaps.py", "if most.length > longest:", "if False:"),
     Fault("high pass of first order", "roughness/steps/base.py", "order=FILTER.gentle", "order=1"),
     Fault(
         "resampled with aliases",
