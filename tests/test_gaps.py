@@ -1,8 +1,12 @@
 """What is missing in a file, chainage, and profiles that run the other way."""
 
+import contextlib
 import csv
+import io
 import itertools
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -45,10 +49,10 @@ def refusal(file, **options):
 
 def test_rows_that_are_not_there_are_a_gap_like_empty_cells(rows, cells):
     words = refusal(rows)
-    assert "line 1546: no elevation at 12500.1 m; in all 399 elevations are missing in 1 gap" in words
+    assert "line 1547: no elevation at 12500.1 m; in all 399 elevations are missing in 1 gap" in words
     assert "the longest 40 m long at 12500.1 m. `repair_gaps`" in words
     assert words == refusal(cells)
-    with pytest.raises(ValueError, match="the gap at 12500.1 m is 40 m long, and `repair_gaps` .* allows 39 m"):
+    with pytest.raises(ValueError, match=r"the gap at 12500\.1 m is 40 m long, and `repair_gaps` .* allows 39 m"):
         mf.read_profile(rows, repair_gaps=39)
     one, other = (mf.read_profile(file, repair_gaps=40.01).profile for file in (rows, cells))
     assert np.allclose(one.stations, other.stations, rtol=0, atol=1e-9)
@@ -73,7 +77,7 @@ def test_a_hole_is_a_gap_on_every_path(tmp_path, paths):
 
 def test_holes_in_other_formats(tmp_path):
     np.savez(tmp_path / "road.npz", distance=X[~LOST], elevation=Z[~LOST])
-    assert "value 1545: no elevation at 12500.1 m" in refusal(tmp_path / "road.npz")
+    assert "value 1546: no elevation at 12500.1 m" in refusal(tmp_path / "road.npz")
     jitter = np.random.default_rng(1).uniform(0, 0.9 * STEP, COUNT)
     file = written(tmp_path / "jitter.csv", [np.round(X + jitter, 4)[~LOST], Z[~LOST]])
     assert "missing in 1 gap, the longest 40" in refusal(file)
@@ -83,7 +87,9 @@ def test_holes_in_other_formats(tmp_path):
     "stations",
     [
         np.cumsum(np.random.default_rng(0).lognormal(2.0, 0.8, 400)),  # a track of GPS
-        np.sort(np.concatenate([np.arange(0.0, 100.0, 0.5), np.arange(20, 21, 0.01)])),  # a shape's dense edge
+        np.unique(
+            np.concatenate([np.arange(0.0, 100.0, 0.5), np.round(np.arange(20, 21, 0.01), 2)])
+        ),  # a shape's dense edge
         np.delete(np.arange(0.0, 100.0, 0.1), [40, 500, 501]),  # a row or two dropped
         np.array([0.0, 1.0, 2.0, 3.0, 40.0]),
     ],
@@ -200,6 +206,23 @@ def test_tables_of_many_files_can_be_put_together(rows, tmp_path):
     ]
 
 
+def test_the_recipe_for_many_files_runs(rows, cells, tmp_path, monkeypatch):
+    page = (Path(__file__).parents[1] / "docs" / "profiles.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page.partition("## Many files")[2], re.DOTALL)
+    (tmp_path / "survey").mkdir()
+    for file in (rows, cells):
+        file.rename(tmp_path / "survey" / file.name)
+    written(tmp_path / "survey" / "short.csv", [X[:300], Z[:300]])
+    monkeypatch.chdir(tmp_path)
+    with contextlib.redirect_stdout(io.StringIO()) as told:
+        exec(code, {})
+    heads, *lines = csv.reader(told.getvalue().splitlines())
+    assert heads == ["file", "from [m]", "to [m]", "path", "IRI [mm/m]"]
+    assert [line[0] for line in lines] == ["cells.csv"] * 5 + ["rows.csv"] * 5
+    assert [line[1:] for line in lines[:5]] == [line[1:] for line in lines[5:]]
+    assert [line[2] for line in lines[:5] if not line[4]] == ["12600.0"]
+
+
 # Values that stand for nothing.
 
 
@@ -306,6 +329,7 @@ def test_footprints_of_the_catalogue_in_a_scenario(tmp_path, given, lengths):
     file = tmp_path / "case.toml"
     file.write_text(
         '[guideway]\nkind = "rigid_guideway"\n[vehicle]\nkind = "catalogue"\nname = "half_truck"\n'
-        f'footprint = {given}\n[roughness]\nkind = "flat"\n[run]\nspeed = 10.0\nduration = 1.0\n'
+        f'footprint = {given}\n[roughness]\nkind = "bump"\nheight = 0.01\nlength = 30.0\nwidth = 1.0\nat = 5.0\n'
+        "[run]\nspeed = 10.0\nduration = 1.0\n"
     )
     assert [contact.footprint for contact in mf.read_scenario(file).case.vehicle.contacts] == lengths

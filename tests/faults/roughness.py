@@ -330,6 +330,10 @@ FAULTS = [
         "or False",
     ),
     Fault("gaps filled unasked", "roughness/gaps.py", "if longest is None:", "if False:"),
+    Fault("holes between stations unseen", "roughness/gaps.py", "if not holes.size:", "if True:"),
+    Fault("long gaps filled in pieces", "roughness/gaps.py", "and gap.length <= longest]", "]"),
+    Fault("markers left in", "roughness/formats/base.py", "for marker in missing:", "for marker in ():"),
+    Fault("turned round in place", "roughness/files.py", "elevations=raw.elevations[::-1],", ""),
     Fault("gaps of any length filled", "roughness/gaps.py", "if most.length > longest:", "if False:"),
     Fault("high pass of first order", "roughness/steps/base.py", "order=FILTER.gentle", "order=1"),
     Fault(

@@ -224,7 +224,7 @@ def describe_profile(profile: Profile | Sequence[Profile], *, progress: Progress
         if marked[n]:
             path = replace(path, fit=path.fit._replace(reason="values that stand for missing ones are no road"))
         paths.append(path)
-        for piece in pieces:
+        for piece in pieces if not marked[n] else ():
             of = f" on path {number}" if len(alike) > 1 else ""
             findings += _oddities(piece.stations, piece.columns[:, number], of)
     findings += _doubts(paths)
