@@ -308,28 +308,3 @@ def test_sections_one_behind_the_other_are_named(tmp_path):
     file = written(tmp_path / "two.csv", [np.tile(X[:50], 3), Z[:150]])
     with pytest.raises(ValueError, match=r"line 52: distance must increase.* falls 2 times in all: recordings one"):
         mf.read_profile(file)
-
-
-# A vehicle of the catalogue on tyres of another length.
-
-
-def test_footprints_of_the_catalogue():
-    assert [c.footprint for c in mf.catalogue("half_truck", footprint=0.3).contacts] == [0.3, 0.3]
-    assert [c.footprint for c in mf.catalogue("half_truck", footprint=[0.2, 0.3]).contacts] == [0.2, 0.3]
-    assert mf.catalogue("golden_car").contacts[0].footprint == 0.25
-    assert mf.catalogue("golden_car", footprint=0.0).contacts[0].footprint == 0.0
-    with pytest.raises(ValueError, match=r"footprint must have shape \(2\), got \(3,\)"):
-        mf.catalogue("half_truck", footprint=[0.1, 0.2, 0.3])
-    with pytest.raises(ValueError, match="footprint must not be negative"):
-        mf.catalogue("half_truck", footprint=[0.1, -0.2])
-
-
-@pytest.mark.parametrize(("given", "lengths"), [("0.3", [0.3, 0.3]), ("[0.2, 0.3]", [0.2, 0.3])])
-def test_footprints_of_the_catalogue_in_a_scenario(tmp_path, given, lengths):
-    file = tmp_path / "case.toml"
-    file.write_text(
-        '[guideway]\nkind = "rigid_guideway"\n[vehicle]\nkind = "catalogue"\nname = "half_truck"\n'
-        f'footprint = {given}\n[roughness]\nkind = "bump"\nheight = 0.01\nlength = 30.0\nwidth = 1.0\nat = 5.0\n'
-        "[run]\nspeed = 10.0\nduration = 1.0\n"
-    )
-    assert [contact.footprint for contact in mf.read_scenario(file).case.vehicle.contacts] == lengths

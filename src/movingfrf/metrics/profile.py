@@ -386,7 +386,7 @@ def _edges(profile: Profile, step: float) -> dict[float, FloatArray]:
     # Segments of 20 m and 100 m [a convention].
     for span in (20.0, 100.0):
         # What is left within half a step of an end is nothing.
-        inner = span * np.arange(np.ceil((first - step / 2) / span), np.floor((last + step / 2) / span) + 1)
+        inner = span * np.arange(np.ceil((first - step / 2) / span), np.floor((last + step / 2) / span) + 1) + 0.0
         if span > shortest_segment(step) + step and inner.size > 1:
             ends = [first] if first < inner[0] - step / 2 else [], [last] if last > inner[-1] + step / 2 else []
             found[span] = np.concatenate([ends[0], inner, ends[1]])

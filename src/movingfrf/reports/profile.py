@@ -21,11 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-_OF_SEGMENTS = (
-    "International roughness index (IRI) of the whole and of segments that begin at multiples of their length; "
-    "what is shorter at both ends stands in iri.csv alone."
-)
-
 # Spatial frequencies of the figures [cycle/m].
 DRAWN_BAND = (0.005, 10.0)
 
@@ -99,7 +94,11 @@ def tables(found: ProfileDescription) -> list[Table]:
         Column("highest", "mm/m"),
         Column("there from", "m"),
     ]
-    return [spectra, Table(_OF_SEGMENTS, "path", columns, [*whole, *rows])]
+    title = (
+        "International roughness index (IRI) of the whole and of segments that begin at multiples of their length; "
+        "what is shorter at both ends stands in iri.csv alone."
+    )
+    return [spectra, Table(title, "path", columns, [*whole, *rows])]
 
 
 def render(found: ProfileDescription, *, understood: str, title: str) -> str:

@@ -124,7 +124,7 @@ def read_profile(
         The longest gap that may be filled by a straight line [m], from the last elevation before to the first
         after. Without it a missing elevation is an error, and so are missing stations.
     missing : sequence of float, optional
-        Values that stand for a missing elevation, in the unit that the file has them in: -9999.
+        Values that stand for a missing elevation [unit of the file]: -9999.
     reverse : bool
         Whether to turn the profile round, as driven the other way. Stations that fall rise then and stay what they
         are; those that rise are counted from the other end. Paths keep their numbers.
@@ -161,7 +161,7 @@ def read_pieces(file: str | Path, **options: Any) -> list[ReadProfile]:
     ----------
     file : str or Path
         The file.
-    **options
+    **options : Any
         Those of `read_profile`. Gaps up to `repair_gaps` are filled; longer ones part the pieces, which are then
         cut on all paths.
 

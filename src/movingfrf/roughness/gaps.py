@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -11,22 +10,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import option
 from movingfrf._basics.wording import count, told_apart
 from movingfrf.roughness.formats.base import RawProfile
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Holes:
-    """From what on stations are missing; in brackets, between what each number is safe."""
-
-    # Times the step that nearly all do not exceed. Survey by hand has twice, a logger that drops points three times
-    # [3 to 20].
-    steps: float = 5.0
-    # Share of the steps that are nearly all: where more of them are long, the profile is meant so, as tracks of GPS
-    # and shapes with dense edges are [0.8 to 0.95].
-    nearly_all: float = 0.9
-    most: int = 4  # stations that are put into holes, times those of the file, so that memory does not matter
-
-
-HOLES = Holes()
+from movingfrf.roughness.sentinels import STANDING
 
 
 class Gap(NamedTuple):
@@ -149,11 +133,11 @@ def with_all_stations(raw: RawProfile) -> RawProfile:
         raise ValueError(f"{raw.place(int(infinite[0][0]))}: elevation must be finite, got inf")
     if steps.size < 2:
         return raw
-    holes = np.flatnonzero(steps > HOLES.steps * np.quantile(steps, HOLES.nearly_all))
+    holes = np.flatnonzero(steps > STANDING.hole * np.quantile(steps, STANDING.nearly_all))
     if not holes.size:
         return raw
     lacking = np.maximum(np.round(steps[holes] / np.median(steps)) - 1, 1)
-    lacking = np.maximum(lacking * min(1.0, HOLES.most * steps.size / lacking.sum()), 1).astype(int)
+    lacking = np.maximum(lacking * min(1.0, STANDING.most_put * steps.size / lacking.sum()), 1).astype(int)
     put = [raw.stations[n] + steps[n] * np.arange(1, k + 1) / (k + 1) for n, k in zip(holes, lacking, strict=True)]
     behind = np.repeat(holes + 1, lacking)
     rows = np.insert(np.arange(raw.stations.size), behind, behind)
@@ -170,7 +154,7 @@ def _why(steps: FloatArray) -> str:
     falls = steps < 0
     if falls.all():
         return f": it falls throughout, and {option('reverse')} turns it round"
-    if falls.any() and falls.sum() <= (1 - HOLES.nearly_all) * steps.size:
+    if falls.any() and falls.sum() <= (1 - STANDING.nearly_all) * steps.size:
         return (
             f"; it falls {count(int(falls.sum()), 'time')} in all: recordings one behind the other, which are not "
             "joined, each belong in a file or a sheet of their own"

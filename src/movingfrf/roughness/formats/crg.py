@@ -45,8 +45,8 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
             road = crg.read(path, check=False)
             stations, across = np.array(road.u), np.array(road.v[::-1])
             # Markers stand in the grid, before slope and banking are added.
-            absent = np.isnan(scaled(np.array(road.z), 1.0, wanted.missing))
-            elevations = np.where(absent, np.nan, road.surface_z())[:, ::-1]
+            absent = np.isnan(scaled(np.array(road.z)[:, ::-1], 1.0, wanted.missing))
+            elevations = np.where(absent, np.nan, road.surface_z()[:, ::-1])
     except (OverflowError, ZeroDivisionError, IndexError, KeyError, TypeError, OSError) as error:
         raise ValueError(f"is not an OpenCRG file that can be read: {type(error).__name__}: {error}") from None
     except ValueError as error:
