@@ -308,3 +308,9 @@ def test_sections_one_behind_the_other_are_named(tmp_path):
     file = written(tmp_path / "two.csv", [np.tile(X[:50], 3), Z[:150]])
     with pytest.raises(ValueError, match=r"line 52: distance must increase.* falls 2 times in all: recordings one"):
         mf.read_profile(file)
+
+
+def test_what_was_done_to_any_piece_is_said(cells):
+    pieces = [piece.profile for piece in mf.read_pieces(cells)]
+    pieces = [pieces[0], mf.detrended(pieces[1], degree=1)]
+    assert mf.describe_profile(pieces).profile.steps == pieces[1].steps

@@ -385,17 +385,6 @@ def test_a_train_is_described_in_short(tmp_path, capsys):
     assert len(told.splitlines()) < 45
 
 
-def test_footprints_of_the_catalogue():
-    assert [c.footprint for c in mf.catalogue("half_truck", footprint=0.3).contacts] == [0.3, 0.3]
-    assert [c.footprint for c in mf.catalogue("half_truck", footprint=[0.2, 0.3]).contacts] == [0.2, 0.3]
-    assert mf.catalogue("golden_car").contacts[0].footprint == 0.25
-    assert mf.catalogue("golden_car", footprint=0.0).contacts[0].footprint == 0.0
-    with pytest.raises(ValueError, match=r"footprint must have shape \(2\), got \(3,\)"):
-        mf.catalogue("half_truck", footprint=[0.1, 0.2, 0.3])
-    with pytest.raises(ValueError, match="footprint must not be negative"):
-        mf.catalogue("half_truck", footprint=[0.1, -0.2])
-
-
 @pytest.mark.parametrize(("given", "lengths"), [("0.3", [0.3, 0.3]), ("[0.2, 0.3]", [0.2, 0.3])])
 def test_footprints_of_the_catalogue_in_a_scenario(tmp_path, given, lengths):
     file = tmp_path / "case.toml"

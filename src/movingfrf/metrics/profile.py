@@ -254,6 +254,7 @@ def _together(pieces: Sequence[Profile]) -> Profile:
         pieces[0],
         distance=np.concatenate([piece.stations for piece in pieces]),
         elevation=np.concatenate([np.asarray(piece.elevation) for piece in pieces]),
+        steps=tuple(dict.fromkeys(step for piece in pieces for step in piece.steps)),
     )
 
 
