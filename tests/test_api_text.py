@@ -73,8 +73,9 @@ def test_the_reader_of_docstrings_sees_what_is_missing():
 @pytest.mark.parametrize("name", CALLABLES)
 def test_unknown_keywords_are_rejected(name):
     """Also by the constructors of values; a misspelt keyword never passes in silence."""
-    # It hands its keywords on, so its own argument must be there.
-    given = {"profile": mf.Profile(range(4), range(4))} if name == "prepared" else {}
+    # These hand their keywords on, so their own argument must be there.
+    own = {"prepared": {"profile": mf.Profile(range(4), range(4))}, "read_pieces": {"file": "road.csv"}}
+    given = own.get(name, {})
     with pytest.raises(TypeError, match=r"unexpected keyword argument|takes no (keyword )?arguments"):
         CALLABLES[name](**given, stifness=1.0)
 

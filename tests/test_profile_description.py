@@ -327,14 +327,14 @@ def test_profile_tells_and_writes(road, tmp_path, capsys):
     content = json.loads((tmp_path / "out" / "profile.json").read_text())
     assert content["length_m"] == 99.75
     heads, *lines = csv.reader((tmp_path / "out" / "iri.csv").read_text().splitlines())
-    assert heads == ["segment [m]", "start [m]", "end [m]", "IRI of path 0 [m/km]", "IRI of path 1 [m/km]"]
-    assert [line[:3] for line in lines] == [["20", str(at), str(at + 20)] for at in (0, 20, 40, 60)]
+    assert heads == ["file", "segment [m]", "start [m]", "end [m]", "IRI of path 0 [mm/m]", "IRI of path 1 [mm/m]"]
+    edges = ["0", "20", "40", "60", "80", "99.75"]
+    assert [line[:4] for line in lines] == [["road.csv", "20", *pair] for pair in itertools.pairwise(edges)]
     both = [path["iri_per_20_m_mm_per_m"] for path in content["paths"]]
-    assert [[float(value) for value in line[3:]] for line in lines] == [
-        list(pair) for pair in zip(*both, strict=True)
-    ]
+    assert [line[4:] for line in lines] == [[f"{x:.5g}" for x in pair] for pair in zip(*both, strict=True)]
+    assert content["segments_m"] == {"20": [float(edge) for edge in edges]}
     assert len(content["paths"]) == 2
-    assert len(content["paths"][0]["iri_per_20_m_mm_per_m"]) == 4
+    assert len(content["paths"][0]["iri_per_20_m_mm_per_m"]) == 5
     assert content["steps"][0].startswith("took out a polynomial")
     assert content["source"] == "road.csv"
 

@@ -397,3 +397,14 @@ def test_a_file_in_millimetres_is_noticed_on_its_own(tmp_path, capsys):
     assert "- the vehicle's length from its first contact to its last is 4270 m, usual is 0.2 to 60 m" in told
     assert main(["vehicles", str(tmp_path / "m.mat")]) == 0
     assert "Findings" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("given", "lengths"), [("0.3", [0.3, 0.3]), ("[0.2, 0.3]", [0.2, 0.3])])
+def test_footprints_of_the_catalogue_in_a_scenario(tmp_path, given, lengths):
+    file = tmp_path / "case.toml"
+    file.write_text(
+        '[guideway]\nkind = "rigid_guideway"\n[vehicle]\nkind = "catalogue"\nname = "half_truck"\n'
+        f'footprint = {given}\n[roughness]\nkind = "bump"\nheight = 0.01\nwidth = 1.0\nat = 5.0\n'
+        "[run]\nspeed = 10.0\nduration = 1.0\n"
+    )
+    assert [contact.footprint for contact in mf.read_scenario(file).case.vehicle.contacts] == lengths

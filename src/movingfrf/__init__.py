@@ -56,6 +56,7 @@ _WHERE = {
     "IsoRoad": "roughness.spectra.iso",
     "Profile": "roughness.profile",
     "read_profile": "roughness.files",
+    "read_pieces": "roughness.files",
     "write_profile": "roughness.files",
     "selected": "roughness.steps.selected",
     "cropped": "roughness.steps.cropped",

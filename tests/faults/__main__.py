@@ -45,6 +45,7 @@ FILES = ["tests/test_matlab_vehicles.py", "tests/test_toml_words.py"]
 
 # These first where the fault lies in files of profiles, what is done to them and what is said of them.
 PROFILES = [
+    "tests/test_gaps.py",
     "tests/test_tables.py",
     "tests/test_preparation.py",
     "tests/test_roles.py",
@@ -58,6 +59,7 @@ PROFILES = [
 
 ABOUT_PROFILES = (
     "roughness/fi",
+    "roughness/gaps",
     "roughness/formats",
     "roughness/preparation",
     "roughness/steps",

@@ -149,6 +149,19 @@ FAULTS = [
         "if path.fit.roughness_at_two > ODDITIES.density or path.index > ODDITIES.index:",
         "if path.fit.roughness_at_two > 1e9 or path.index > 1e9:",
     ),
+    Fault(
+        "segments from the first station on",
+        "metrics/profile.py",
+        "np.ceil((first - step / 2) / span)",
+        "(first / span)",
+    ),
+    Fault(
+        "segments across gaps unmarked",
+        "metrics/profile.py",
+        "pieces[longest].paths), np.nan)",
+        "pieces[longest].paths), 0.0)",
+    ),
+    Fault("index of markers", "metrics/profile.py", "found[:, marked] = np.nan", "pass"),
     Fault("one level stretch of many", "metrics/profile.py", "[: ODDITIES.most_stretches]", "[:1]"),
     # What is left out, told apart, cut and refused.
     Fault(

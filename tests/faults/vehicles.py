@@ -95,4 +95,5 @@ FAULTS = [
         "path=side,\n                across=aside[1 - side]",
     ),
     Fault("spring without its dashpot", "vehicles/oscillator.py", "damping=damping, footprint", "footprint"),
+    Fault("footprints of the catalogue kept", "vehicles/catalogue.py", "replace(own, footprint=length)", "own"),
 ]

@@ -156,3 +156,14 @@ def test_rigid_road_leaves_the_static_loads_alone(name):
     result = mf.simulate(mf.RigidGuideway(), VEHICLES[name], flat, speed=10.0, duration=0.1, time_step=0.01)
     np.testing.assert_allclose(result.static_load, VEHICLES[name].static_loads, rtol=1e-12)
     assert not result.static_deflection.values.any()
+
+
+def test_footprints_of_the_catalogue():
+    assert [c.footprint for c in mf.catalogue("half_truck", footprint=0.3).contacts] == [0.3, 0.3]
+    assert [c.footprint for c in mf.catalogue("half_truck", footprint=[0.2, 0.3]).contacts] == [0.2, 0.3]
+    assert mf.catalogue("golden_car").contacts[0].footprint == 0.25
+    assert mf.catalogue("golden_car", footprint=0.0).contacts[0].footprint == 0.0
+    with pytest.raises(ValueError, match=r"footprint must have shape \(2\), got \(3,\)"):
+        mf.catalogue("half_truck", footprint=[0.1, 0.2, 0.3])
+    with pytest.raises(ValueError, match="footprint must not be negative"):
+        mf.catalogue("half_truck", footprint=[0.1, -0.2])

@@ -17,7 +17,7 @@ from movingfrf._basics.documented import documented
 from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
 from movingfrf.roughness.files import ReadProfile, naming_formats, read_profile
 from movingfrf.roughness.formats.base import ColumnKey
-from movingfrf.roughness.preparation import Preparation, read_prepared
+from movingfrf.roughness.preparation import Preparation, read_prepared, read_prepared_pieces
 
 
 class Typed(NamedTuple):
@@ -91,14 +91,19 @@ ProfileOptions = Parameter(name="*")(
 AS_THE_FILE_HAS_IT = ProfileOptions()
 
 
-def read_as_asked(file: Path, options: ProfileOptions) -> ReadProfile:  # type: ignore[valid-type]
-    """Read a file and do what was asked for; a refused option is named as it was typed."""
+def read_as_asked(
+    file: Path,
+    options: ProfileOptions,  # type: ignore[valid-type]
+    *,
+    keep_gaps: bool = False,
+) -> list[ReadProfile]:
+    """Read a file, or its pieces, and do what was asked for; a refused option is named as it was typed."""
     asked = {}
     for name, value in vars(options).items():
         typed = TYPED.get(OPTIONS[name].annotation)
         asked[name] = value if typed is None or value is None else typed.value(_as_typed(name), value)
     try:
-        return read_prepared(file, **asked)
+        return read_prepared_pieces(file, **asked) if keep_gaps else [read_prepared(file, **asked)]
     except ParameterError as error:
         raise ParameterError([fault._replace(name=_as_typed(fault.name)) for fault in error.faults]) from None
 
@@ -114,6 +119,7 @@ def profile(
     /,
     *,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    keep_gaps: Annotated[bool, Parameter(negative="")] = False,
     options: ProfileOptions = AS_THE_FILE_HAS_IT,  # type: ignore[valid-type]
 ) -> None:
     """Describe a measured profile: length, step, spectrum and ISO 8608 class, IRI, coherence, and what looks odd.
@@ -127,6 +133,8 @@ def profile(
         The profile: {titles}.
     output
         The folder to write into.
+    keep_gaps
+        Describe the pieces between gaps of a profile: segments that touch a gap have no index.
     options
         How it is read and prepared.
     """
@@ -138,18 +146,21 @@ def profile(
         from movingfrf.metrics.profile import as_dict, describe_profile, indices_as_csv
         from movingfrf.reports.profile import render, tables
 
-        read, understood = read_as_asked(file, options)
-        found = describe_profile(read, progress=stages.report)
+        pieces = read_as_asked(file, options, keep_gaps=keep_gaps)
+        most = 6  # pieces whose sentences are printed
+        understood = "\n".join(piece.understood for piece in pieces[:most])
+        understood += f"\nand {len(pieces) - most} more pieces" if len(pieces) > most else ""
+        found = describe_profile([piece.profile for piece in pieces], progress=stages.report)
         written = []
         if output is not None:
             stages.report("figures", 0.0)
             with replacing(output) as files:
                 files["profile.html"] = render(found, understood=understood, title=file.name)
                 files["profile.json"] = json.dumps(as_dict(found, understood), indent=1, ensure_ascii=False) + "\n"
-                files["iri.csv"] = indices_as_csv(found)
+                files["iri.csv"] = indices_as_csv(found, file.name)
             written = [output / name for name in files]
     console.print(understood, soft_wrap=True)
-    for sentence in read.steps:
+    for sentence in found.profile.steps:
         console.print(f"- {sentence}", soft_wrap=True)
     console.print()
     print_tables(console, tables(found))
@@ -193,7 +204,7 @@ def convert(
         made = writer(target, encoding=encoding)
         if target.exists() and not force:
             raise ValueError(f"{target} exists; choose another name, or --force to replace it")
-        read, understood = read_as_asked(file, options)
+        ((read, understood),) = read_as_asked(file, options)
         stages.report("writing", 0.0)
         with replacing(target.parent) as files:
             files |= made(read)

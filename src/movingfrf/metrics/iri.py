@@ -130,6 +130,30 @@ def straight_index(profile: Profile, segment: float | None, average: float = PRO
     return 1e3 * _segments(profile, GOLDEN_CAR, segment, average, np.abs)
 
 
+def index_between(profile: Profile, edges: FloatArray) -> FloatArray:
+    """Roughness index of segments, by the rules of `iri`.
+
+    Parameters
+    ----------
+    profile : Profile
+        The road, at even steps and long enough for an index.
+    edges : ndarray, shape (segment + 1,)
+        Where each segment begins and ends [m], at least `shortest_segment` apart.
+
+    Returns
+    -------
+    ndarray, shape (segment, path)
+        Index [mm/m].
+    """
+    step = profile.even_step() or 0.0
+    return 1e3 * _means(profile, step, GOLDEN_CAR, edges - profile.stations[0], PROCEDURE.average, np.abs)
+
+
+def shortest_segment(step: float, average: float = PROCEDURE.average) -> float:
+    """Length of the shortest segment that has an index [m]: a whole window, a fraction of a step at either end."""
+    return average + 3 * step
+
+
 def coarse_for_index(profile: Profile, average: float = PROCEDURE.average) -> list[Finding]:
     """Say what straight pieces between far stations cost the roughness index.
 
@@ -253,8 +277,7 @@ def _segments(
     step, length = profile.even_step() or 0.0, float(np.ptp(profile.stations))
     with checking() as check:
         average = check.not_negative("average", average, "m")
-        # A whole window, a fraction of a step at either end of it, and a step to measure.
-        shortest = average + 3 * step
+        shortest = shortest_segment(step, average)
         if not step:
             check.refuse("profile", "must have stations at even steps [m]; resample it first")
         elif step > PROCEDURE.longest_step:
@@ -273,10 +296,24 @@ def _segments(
                 "segment",
                 f"must be at least {shortest:g} m and at most the profile's {length:g} m, got {segment!r} m",
             )
-    weights = _weights(average / step)
     span = length if segment is None else segment
-    # Where each segment begins and ends, in steps; a rounding must not lose the last one.
-    bounds = np.floor(np.arange(int(length / span + 1e-6) + 1) * span / step + 1e-6).astype(int)
+    # A rounding must not lose the last segment.
+    edges = np.arange(int(length / span + 1e-6) + 1) * span
+    return _means(profile, step, car, edges, average, measure)
+
+
+def _means(
+    profile: Profile,
+    step: float,
+    car: ReferenceCar,
+    edges: FloatArray,
+    average: float,
+    measure: Callable[[FloatArray], FloatArray],
+) -> FloatArray:
+    """Mean of a measure between edges [m], distances from the first station on; shape (segment, path)."""
+    weights = _weights(average / step)
+    # Where each segment begins and ends, in steps.
+    bounds = np.floor(edges / step + 1e-6).astype(int)
     # The first and the last steps are not surrounded by a whole window.
     half = weights.size // 2
     bounds = np.clip(bounds - half, 0, len(profile.stations) - weights.size)

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import csv
 import io
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray, finite
+from movingfrf._basics.checks import checking, option
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.values import Value, brief
 from movingfrf._basics.welch import Spectra
 from movingfrf._basics.wording import evenly_spread, named_paths, plain, told_apart
-from movingfrf.metrics.iri import PROCEDURE, coarse_for_index, straight_index
+from movingfrf.metrics.iri import PROCEDURE, coarse_for_index, index_between, shortest_segment, straight_index
 from movingfrf.metrics.spectra import path_spectra
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
 from movingfrf.roughness.profile import Profile, require_profile
@@ -60,9 +63,9 @@ class PathDescription(Value):
     fit : IsoFit
         Fitted spectrum: roughness, waviness, class and range, or why there is none.
     index : float
-        International roughness index of the whole path [mm/m]; nan where it has none.
+        International roughness index of the whole path [mm/m], of pieces by their lengths; nan where it has none.
     indices : dict of float to ndarray
-        Length of the segments [m] → index of each, from the first station on [mm/m].
+        Length of the segments [m] → index of each [mm/m]; nan where a segment touches a gap.
     spatial_frequency, density : ndarray
         Estimated spectrum [cycle/m] and [m³].
     """
@@ -87,7 +90,12 @@ class ProfileDescription(Value):
     Parameters
     ----------
     profile : Profile
-        The profile itself.
+        The profile itself; of pieces, all stations that there are.
+    pieces : tuple of Profile
+        The pieces between gaps; the profile alone where it has none.
+    edges : dict of float to ndarray
+        Length of the segments [m] → where they begin and end [m], shape (segment + 1,): at multiples of the length,
+        the first and the last segment being what is left at either end.
     shortest_step, longest_step : float
         Smallest and largest distance between stations [m].
     used_step : float
@@ -102,6 +110,8 @@ class ProfileDescription(Value):
     """
 
     profile: Profile
+    pieces: tuple[Profile, ...]
+    edges: dict[float, FloatArray]
     shortest_step: float
     longest_step: float
     used_step: float
@@ -123,7 +133,7 @@ class ProfileDescription(Value):
 
     @property
     def length(self) -> float:
-        """Distance from the first station to the last [m]."""
+        """Distance from the first station to the last [m], gaps included."""
         return float(np.ptp(self.profile.stations))
 
     @property
@@ -133,14 +143,15 @@ class ProfileDescription(Value):
         return f"{described} of {paths} paths are described" if described < paths else ""
 
 
-def describe_profile(profile: Profile, *, progress: Progress = silent) -> ProfileDescription:
+def describe_profile(profile: Profile | Sequence[Profile], *, progress: Progress = silent) -> ProfileDescription:
     """Describe a profile.
 
     Parameters
     ----------
-    profile : Profile
-        The profile. Of equal paths the first is described, and of many paths six. Where stations are uneven,
-        spectra, coherence and the roughness index are taken from the cubic spline at the median step.
+    profile : Profile or sequence of Profile
+        The profile, or its pieces between gaps in order, as `read_pieces` reads them. Of equal paths the first is
+        described, and of many paths six. Where stations are uneven, spectra, coherence and the roughness index are
+        taken from the cubic spline at the median step. Of pieces, spectra and coherence are those of the longest.
     progress : callable
         Called with the name of a stage and the fraction of it that is done.
 
@@ -149,6 +160,11 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
     ProfileDescription
         Extent, spectrum, class and roughness index of each path, coherence, and what looks odd.
 
+    Raises
+    ------
+    ValueError
+        If pieces overlap or have different numbers of paths.
+
     Examples
     --------
     >>> import movingfrf as mf
@@ -156,52 +172,98 @@ def describe_profile(profile: Profile, *, progress: Progress = silent) -> Profil
     >>> describe_profile(road).paths[0].fit.road_class
     'B'
     """
-    require_profile(profile)
-    steps = np.diff(profile.stations)
-    alike = profile.alike
+    pieces = tuple(profile) if isinstance(profile, (list, tuple)) else (profile,)
+    for piece in pieces:
+        require_profile(piece)
+    whole = _together(pieces)
+    steps = np.concatenate([np.diff(piece.stations) for piece in pieces])
+    alike = whole.alike
     findings = [
         f"{_sentence(named_paths(same))} are equal: path {same[0]} is described for all."
         for same in alike
         if len(same) > 1
     ]
     numbers = [alike[n][0] for n in evenly_spread(len(alike))]
-    described = selected(profile, paths=numbers) if len(numbers) < profile.paths else profile
-    step = described.even_step()
-    if step is None:
+    described = [selected(piece, paths=numbers) if len(numbers) < whole.paths else piece for piece in pieces]
+    longest = int(np.argmax([np.ptp(piece.stations) for piece in pieces]))
+    uneven = [piece.even_step() is None for piece in described]
+    step = described[longest].even_step() or float(np.median(np.diff(pieces[longest].stations)))
+    if any(uneven):
         progress("even stations", 0.0)
-        step = float(np.median(steps))
-        described = resampled(described, step=step)
-        shortest, longest = told_apart(steps.min(), steps.max(), digits=4)
+        described = [
+            resampled(piece, step=step) if odd else piece for piece, odd in zip(described, uneven, strict=True)
+        ]
+        shortest, furthest = told_apart(steps.min(), steps.max(), digits=4)
         findings.append(
-            f"Stations are uneven, {shortest} to {longest} m apart: spectra and indices are taken from the cubic "
+            f"Stations are uneven, {shortest} to {furthest} m apart: spectra and indices are taken from the cubic "
             f"spline at steps of {step:.4g} m."
         )
-    indices, reason = _indices(described, step, progress)
+    if len(pieces) > 1:
+        findings.append(_parted(pieces, longest))
+    stations, columns = whole.stations, whole.columns[:, numbers]
+    # Where markers of missing values stand, nothing that is computed means anything.
+    marked = np.array([bool(sentinels(column)) for column in columns.T])
+    edges = _edges(whole, step)
+    indices, reason = _indices(described, longest, edges, progress)
+    for found in indices.values():
+        found[:, marked] = np.nan
     progress("spectra", 0.0)
     # By the profile's own numbers: what a spline makes of them between stations has not their resolution.
-    rough = ~straight(profile.stations, profile.columns[:, numbers])
-    estimated = path_spectra(described.columns, step, rough)
-    slopes = mean_slope(profile.stations, profile.columns[:, numbers])
+    rough = ~straight(stations, columns) & ~marked
+    estimated = path_spectra(described[longest].columns, step, rough)
+    slopes = mean_slope(stations, columns)
     if reason:
         findings.append(reason)
-    elif indices:
-        findings += [f"{_sentence(finding.message)}." for finding in coarse_for_index(described)]
-    findings += [_missing(each) for each in sentinels(profile.columns)]
+    elif indices and not marked.any():
+        findings += [f"{_sentence(finding.message)}." for finding in coarse_for_index(described[longest])]
+    findings += [_missing(each) for each in sentinels(whole.columns)]
     paths = []
     for n, number in enumerate(numbers):
         progress("paths", n / len(numbers))
-        column = profile.columns[:, number]
-        paths.append(_path(described, n, number, column, float(slopes[n]), indices, estimated))
-        findings += _oddities(profile.stations, column, f" on path {number}" if len(alike) > 1 else "")
+        path = _path(described[longest], n, number, columns[:, n], float(slopes[n]), indices, estimated)
+        if marked[n]:
+            path = replace(path, fit=path.fit._replace(reason="values that stand for missing ones are no road"))
+        paths.append(path)
+        for piece in pieces if not marked[n] else ():
+            of = f" on path {number}" if len(alike) > 1 else ""
+            findings += _oddities(piece.stations, piece.columns[:, number], of)
     findings += _doubts(paths)
     return ProfileDescription(
-        profile=profile,
+        profile=whole,
+        pieces=pieces,
+        edges={span: at for span, at in edges.items() if span in indices},
         shortest_step=float(steps.min()),
         longest_step=float(steps.max()),
         used_step=step,
         paths=tuple(paths),
-        coherence=_coherence(estimated) if described.paths > 1 else None,
+        coherence=_coherence(estimated) if described[longest].paths > 1 else None,
         findings=tuple(findings),
+    )
+
+
+def _together(pieces: Sequence[Profile]) -> Profile:
+    """Put all stations of pieces into one profile, in which nothing may be taken between pieces."""
+    with checking() as check:
+        if not pieces:
+            check.refuse("profile", "must be a profile or its pieces, got none")
+        elif len({piece.paths for piece in pieces}) > 1:
+            check.refuse("profile", "must have pieces with the same number of paths")
+    if len(pieces) == 1:
+        return pieces[0]
+    return replace(
+        pieces[0],
+        distance=np.concatenate([piece.stations for piece in pieces]),
+        elevation=np.concatenate([np.asarray(piece.elevation) for piece in pieces]),
+        steps=tuple(dict.fromkeys(step for piece in pieces for step in piece.steps)),
+    )
+
+
+def _parted(pieces: Sequence[Profile], longest: int) -> str:
+    """Say what gaps cost."""
+    first, last = told_apart(*pieces[longest].stations[[0, -1]].tolist())
+    return (
+        f"There are gaps between {len(pieces)} pieces: segments that touch one have no roughness index, that of "
+        f"the whole is of the pieces by their lengths, and spectra are of the longest, {first} m to {last} m."
     )
 
 
@@ -252,6 +314,7 @@ def as_dict(found: ProfileDescription, understood: str = "") -> dict[str, object
         "shortest_step_m": found.shortest_step,
         "longest_step_m": found.longest_step,
         "paths": paths,
+        "segments_m": {f"{span:g}": at.tolist() for span, at in found.edges.items()},
         "coherence": {
             "spatial_frequency_cycle_per_m": coherence[0].tolist(),
             "magnitude_squared": coherence[1].tolist(),
@@ -262,29 +325,31 @@ def as_dict(found: ProfileDescription, understood: str = "") -> dict[str, object
     return cleaned
 
 
-def indices_as_csv(found: ProfileDescription) -> str:
+def indices_as_csv(found: ProfileDescription, name: str = "") -> str:
     """Write the roughness index of every segment as a table.
 
     Parameters
     ----------
     found : ProfileDescription
         What `describe_profile` returned.
+    name : str
+        Name of the file, for tables that are put together; that of the profile's source by default.
 
     Returns
     -------
     str
-        CSV text: length of the segments, where each begins and ends [m], and the index of each path [m/km]; heads
-        alone of a profile without segments.
+        CSV text: the file, length of whole segments, where each begins and ends [m], and the index of each path
+        [mm/m], empty where there is none; heads alone of a profile without segments.
     """
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    table.writerow(
-        ["segment [m]", "start [m]", "end [m]", *(f"IRI of path {path.number} [m/km]" for path in found.paths)]
-    )
-    for span in found.paths[0].indices:
-        for n, row in enumerate(zip(*(path.indices[span].tolist() for path in found.paths), strict=True)):
-            edges = (found.profile.stations[0] + span * at for at in (n, n + 1))
-            table.writerow([f"{span:g}", *(f"{edge:.12g}" for edge in edges), *row])
+    heads = ["file", "segment [m]", "start [m]", "end [m]"]
+    table.writerow([*heads, *(f"IRI of path {path.number} [mm/m]" for path in found.paths)])
+    for span, edges in found.edges.items():
+        for n, (start, end) in enumerate(pairwise(edges.tolist())):
+            row = (path.indices[span][n] for path in found.paths)
+            values = ("" if np.isnan(value) else f"{value:.5g}" for value in row)
+            table.writerow([name or found.profile.source, f"{span:g}", f"{start:.12g}", f"{end:.12g}", *values])
     return text.getvalue()
 
 
@@ -315,22 +380,56 @@ def _path(
     )
 
 
-def _indices(even: Profile, step: float, progress: Progress) -> tuple[dict[float, FloatArray], str]:
+def _edges(profile: Profile, step: float) -> dict[float, FloatArray]:
+    """Where segments begin and end [m], by their length: multiples of it, and both ends of the profile."""
+    first, last = profile.stations[[0, -1]].tolist()
+    found = {}
+    # Segments of 20 m and 100 m [a convention].
+    for span in (20.0, 100.0):
+        # What is left within half a step of an end is nothing.
+        inner = span * np.arange(np.ceil((first - step / 2) / span), np.floor((last + step / 2) / span) + 1) + 0.0
+        if span > shortest_segment(step) + step and inner.size > 1:
+            ends = [first] if first < inner[0] - step / 2 else [], [last] if last > inner[-1] + step / 2 else []
+            found[span] = np.concatenate([ends[0], inner, ends[1]])
+    return found
+
+
+def _indices(
+    pieces: Sequence[Profile], longest: int, edges: dict[float, FloatArray], progress: Progress
+) -> tuple[dict[float, FloatArray], str]:
     """Roughness index of the whole (at 0) and of segments, and why there is none."""
-    length = float(np.ptp(even.stations))
+    step, length = pieces[longest].even_step() or 0.0, float(np.ptp(pieces[longest].stations))
     if step > PROCEDURE.longest_step:
         most, got = told_apart(PROCEDURE.longest_step, step, digits=2)
         return {}, f"The roughness index needs a step of at most {most} m, and there is one of {got} m."
     if length < PROCEDURE.start:
         least, got = told_apart(PROCEDURE.start, length, digits=4)
         return {}, f"The roughness index needs {least} m of road, and there are {got} m."
-    # Segments of 20 m and 100 m [a convention].
-    wanted = [0.0, *(span for span in (20.0, 100.0) if step * 4 + PROCEDURE.average < span <= length)]
-    found = {}
-    for n, span in enumerate(wanted):
-        progress("roughness index", n / len(wanted))
-        found[span] = straight_index(even, span or None)
+    fit = [
+        piece
+        for piece in pieces
+        if np.ptp(piece.stations) >= PROCEDURE.start and (piece.even_step() or 0.0) <= PROCEDURE.longest_step
+    ]
+    progress("roughness index", 0.0)
+    lengths = [float(np.ptp(piece.stations)) for piece in fit]
+    found = {0.0: np.average([straight_index(piece, None) for piece in fit], axis=0, weights=lengths)}
+    for n, (span, bounds) in enumerate(edges.items(), start=1):
+        progress("roughness index", n / (len(edges) + 1))
+        found[span] = np.full((bounds.size - 1, pieces[longest].paths), np.nan)
+        for piece in fit:
+            own = _within(piece, bounds)
+            if own.stop > own.start:
+                found[span][own] = index_between(piece, bounds[own.start : own.stop + 1])
     return found, ""
+
+
+def _within(piece: Profile, bounds: FloatArray) -> slice:
+    """Segments that lie on a piece and are long enough for an index."""
+    step = piece.even_step() or 0.0
+    starts, ends = bounds[:-1], bounds[1:]
+    there = (starts >= piece.stations[0] - step / 2) & (ends <= piece.stations[-1] + step / 2)
+    numbers = np.flatnonzero(there & (ends - starts >= shortest_segment(step)))
+    return slice(int(numbers[0]), int(numbers[-1]) + 1) if numbers.size else slice(0, 0)
 
 
 def _coherence(estimated: Spectra) -> tuple[FloatArray, FloatArray] | None:
@@ -370,7 +469,8 @@ def _missing(value: Sentinel) -> str:
     where = "1 elevation is" if value.number == 1 else f"{value.number} elevations are"
     return (
         f"{where} {plain(value.value)} m, {value.off:.4g} m from the nearest other one: more likely a marker of "
-        "missing values than the road; leave such values empty in the file, or crop them off."
+        f"missing values than the road, so that there is neither class nor index; {option('missing')} says what "
+        "stands for nothing, in the file's unit."
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.wording import evenly_spread, some_of
-from movingfrf.results.labels import contacts_in_words
+from movingfrf.results.labels import contact_names, contacts_in_words
 
 if TYPE_CHECKING:
     import xarray as xr

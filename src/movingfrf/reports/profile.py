@@ -74,9 +74,10 @@ def tables(found: ProfileDescription) -> list[Table]:
         ],
     )
     rows = [
-        Row(f"{_name(path)}, per {span:g} m", [str(each.size), *_summary(each, span, found)], colour)
+        Row(f"{_name(path)}, per {span:g} m", summary, colour)
         for path, colour in zip(found.paths, colours, strict=True)
         for span, each in path.indices.items()
+        if (summary := _summary(each, span, found))
     ]
     whole = [
         Row(f"{_name(path)}, whole", ["1", number(path.index), "–", "–", "–", "–"], colour)
@@ -93,7 +94,11 @@ def tables(found: ProfileDescription) -> list[Table]:
         Column("highest", "mm/m"),
         Column("there from", "m"),
     ]
-    return [spectra, Table("International roughness index (IRI).", "path", columns, [*whole, *rows])]
+    title = (
+        "International roughness index (IRI) of the whole and of segments that begin at multiples of their length; "
+        "what is shorter at both ends stands in iri.csv alone."
+    )
+    return [spectra, Table(title, "path", columns, [*whole, *rows])]
 
 
 def render(found: ProfileDescription, *, understood: str, title: str) -> str:
@@ -117,7 +122,7 @@ def render(found: ProfileDescription, *, understood: str, title: str) -> str:
     even = found.longest_step - found.shortest_step <= 1e-6 * found.longest_step
     step = f"{found.shortest_step:.4g}" if even else f"{found.shortest_step:.4g} to {found.longest_step:.4g}"
     settings = [
-        Setting("length", f"{found.length:.6g} m", f"from {stations[0]:g} to {stations[-1]:g} m"),
+        Setting("length", f"{found.length:.6g} m", f"from {stations[0]:.12g} to {stations[-1]:.12g} m"),
         Setting("stations", str(stations.size)),
         Setting("step", f"{step} m"),
         Setting("paths", str(found.profile.paths), f"{len(found.paths)} of them described" if found.scope else ""),
@@ -149,7 +154,8 @@ def _method() -> list[str]:
         "part of it in which there is content: not beyond a place where the density falls to a quarter of the "
         "line. The class is that of the fit with waviness 2.",
         "IRI: the golden car at 80 km/h over the profile averaged over 250 mm (ASTM E1926), mean rectified "
-        "suspension speed over speed; segments from the first station on, what is left at the end left out.",
+        "suspension speed over speed. Segments begin at multiples of their length; what is left at both ends is "
+        "shorter, is listed in iri.csv, and is no part of mean, median and the like.",
         "Coherence: magnitude squared of the cross-spectrum over the product of both spectra, each summed over "
         "the bands of ISO 8608. It is not zero even of paths without anything in common, but about one over the "
         "number of lines of all pieces that were summed: short profiles show too much of it.",
@@ -181,9 +187,14 @@ def _or_dash(value: float) -> str:
 
 
 def _summary(each: np.ndarray, span: float, found: ProfileDescription) -> list[str]:
-    worst = int(each.argmax())
-    values = (each.mean(), np.median(each), np.percentile(each, 95), each[worst])
-    return [*(number(float(v)) for v in values), f"{found.profile.stations[0] + worst * span:g}"]
+    """Tell number, mean, median, 95 % and highest of whole segments, and where that begins; empty without any."""
+    starts, ends = found.edges[span][:-1], found.edges[span][1:]
+    there = np.flatnonzero(np.isfinite(each) & (ends - starts > span - found.used_step / 2))
+    if not there.size:
+        return []
+    values, worst = each[there], there[each[there].argmax()]
+    told = (values.mean(), np.median(values), np.percentile(values, 95), each[worst])
+    return [str(there.size), *(number(float(v)) for v in told), f"{starts[worst]:.12g}"]
 
 
 def _figures(found: ProfileDescription) -> list[Illustration]:
@@ -196,10 +207,10 @@ def _figures(found: ProfileDescription) -> list[Illustration]:
 def _elevations(found: ProfileDescription) -> Illustration:
     figure = blank(SIZE.single)
     ax = figure.subplots()
-    columns = found.profile.columns
     for path, colour in zip(found.paths, _colours(found), strict=True):
-        distance, elevation = decimated(found.profile.stations, columns[:, path.number])
-        ax.plot(distance, elevation, color=colour, label=f"path {_name(path)}")
+        for n, piece in enumerate(found.pieces):
+            distance, elevation = decimated(piece.stations, piece.columns[:, path.number])
+            ax.plot(distance, elevation, color=colour, label="" if n else f"path {_name(path)}")
     ax.margins(x=0)
     ax.ticklabel_format(axis="y", useOffset=False)
     ax.set_xlabel("distance [m]")
@@ -242,7 +253,7 @@ def _index(found: ProfileDescription) -> Illustration:
     ax = figure.subplots()
     for path, colour in zip(found.paths, _colours(found), strict=True):
         for n, (span, each) in enumerate(path.indices.items()):
-            _stairs(ax, found.profile.stations[0], span, each, colour, f"path {_name(path)}, per {span:g} m", n)
+            _stairs(ax, found.edges[span], each, colour, f"path {_name(path)}, per {span:g} m", n)
     ax.margins(x=0)
     ax.set_ylim(bottom=0.0)
     ax.set_xlabel("distance [m]")
@@ -252,9 +263,8 @@ def _index(found: ProfileDescription) -> Illustration:
     return illustrated("iri", "International roughness index", caption, figure)
 
 
-def _stairs(ax: Axes, start: float, span: float, each: np.ndarray, colour: str, label: str, rank: int) -> None:
+def _stairs(ax: Axes, edges: np.ndarray, each: np.ndarray, colour: str, label: str, rank: int) -> None:
     """Draw segments as stairs, thinned out where there are many."""
-    edges = start + span * np.arange(each.size + 1)
     x, y = decimated(np.repeat(edges, 2)[1:-1], np.repeat(each, 2))
     ax.plot(x, y, color=colour, linewidth=0.7 + 1.1 * rank, alpha=0.55 + 0.4 * rank, label=label)
 

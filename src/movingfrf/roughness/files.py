@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from inspect import signature
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -16,6 +17,7 @@ from movingfrf._basics.wording import count, told_apart
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file, sheets
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, Wanted
+from movingfrf.roughness.gaps import completed, part, whole_pieces
 from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps.cropped import cropping, within
 from movingfrf.roughness.steps.selected import path_numbers, selecting
@@ -93,6 +95,8 @@ def read_profile(
     paths: Sequence[int] | None = None,
     crop_rims: bool = False,
     repair_gaps: float | None = None,
+    missing: Sequence[float] | None = None,
+    reverse: bool = False,
 ) -> ReadProfile:
     r"""Read a profile from a file: {titles}.
 
@@ -131,7 +135,12 @@ def read_profile(
         them), then stations at either end.
     repair_gaps : float, optional
         The longest gap that may be filled by a straight line [m], from the last elevation before to the first
-        after. Without it a missing elevation is an error.
+        after. Without it a missing elevation is an error, and so are missing stations.
+    missing : sequence of float, optional
+        Values that stand for a missing elevation [unit of the file]: -9999.
+    reverse : bool
+        Whether to turn the profile round, as driven the other way. Stations that fall rise then and stay what they
+        are; those that rise are counted from the other end. Paths keep their numbers.
 
     Returns
     -------
@@ -153,65 +162,43 @@ def read_profile(
     >>> profile.elevation.tolist()
     [0.0015, 0.0025, 0.002, 0.001]
     """
-    with checking() as check:
-        path = check.file("file", file)
-        if repair_gaps is not None:
-            repair_gaps = check.positive("repair_gaps", repair_gaps, "m")
-        wanted = None if across is None else check.array("across", across, "m", (None,))
-        if wanted is not None and not check.faults and not wanted.size:
-            check.refuse("across", "must name at least one lateral position [m]")
-        if columns is not None and not (
-            isinstance(columns, (list, tuple)) and all(type(column) in (str, int) for column in columns)
-        ):
-            check.refuse("columns", f"must be a list of names or numbers of columns, got {shown(columns)}")
-        if units is not None and not (
-            isinstance(units, (list, tuple)) and len(units) > 1 and all(isinstance(unit, str) for unit in units)
-        ):
-            check.refuse(
-                "units", f"must be a list of units, of the stations and of the elevations, got {shown(units)}"
-            )
-        if speed is not None:
-            speed = check.positive("speed", speed, "m/s")
-        if skip_lines is not None:
-            skip_lines = check.whole("skip_lines", skip_lines, least=0)
-        if not isinstance(crop_rims, bool):
-            check.refuse("crop_rims", f"must be true or false, got {shown(crop_rims)}")
-        first = first if first is None else check.finite("first", first, "m")
-        last = last if last is None else check.finite("last", last, "m")
-        if recording is not None:
-            recording = check.text("recording", recording)
-        if format is not None:
-            format = check.choice("format", format, FORMATS)
-    try:
-        form = _recognised(path, format)
-        if recording is not None and not form.several:
-            raise ValueError(f"is {form.title}, which holds one recording: {option('recording')} has no choice")
-        raw = form.read(path, _understood_by(form, Wanted(columns, recording, units, skip_lines or 0)))
-        raw = _at_speed(raw, speed)
-        # What is chosen is chosen before anything is checked: what lies outside may be as it likes.
-        raw = _cropped(raw, first, last)
-        if wanted is not None:
-            raw = _on_paths(raw, wanted)
-        if crop_rims:
-            raw = _cropped_sides(raw) if wanted is None and raw.across is not None else raw
-        raw = _selected(raw, paths)
-        raw = _completed(_cropped_ends(raw) if crop_rims else raw, repair_gaps)
-        profile = Profile(
-            raw.stations,
-            raw.elevations[:, 0] if raw.same_across else raw.elevations,
-            source=f"{path.name} ({raw.source})" if raw.source else path.name,
-            steps=raw.steps,
-            across=None if raw.across is None else tuple(raw.across.tolist()),
-        )
-    except ParameterError as error:
-        if {fault.name for fault in error.faults} <= {"first", "last", "paths"}:
-            raise
-        raise ValueError(f"{path}: {error}") from None
-    except OSError as error:
-        raise ValueError(f"cannot read {path}: {error.strerror or error}") from None
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
-    return ReadProfile(profile, _sentence(path.name, profile, raw))
+    asked = locals()
+    (found,) = _read(lambda raw, longest: [completed(raw, longest)], **asked)
+    return found
+
+
+def read_pieces(file: str | Path, **options: Any) -> list[ReadProfile]:
+    r"""Read the pieces of a profile between its gaps: what can be described of a profile that lacks something.
+
+    Parameters
+    ----------
+    file : str or Path
+        The file.
+    **options : Any
+        Those of `read_profile`. Gaps up to `repair_gaps` are filled; longer ones part the pieces, which are then
+        cut on all paths.
+
+    Returns
+    -------
+    list of ReadProfile
+        The pieces of at least four stations, in order; their `steps` name the gaps. One where nothing is missing.
+
+    Raises
+    ------
+    ValueError
+        As `read_profile` does, but for gaps; if no piece has four stations.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "road.csv"
+    >>> _ = path.write_text("x,z\n" + "".join(f"{x},{'' if 4 < x < 9 else 0.01}\n" for x in range(20)))
+    >>> [piece.profile.stations[[0, -1]].tolist() for piece in read_pieces(path)]
+    [[0.0, 4.0], [9.0, 19.0]]
+    """
+    asked = signature(read_profile).bind(file, **options)
+    asked.apply_defaults()
+    return _read(whole_pieces, **asked.arguments)
 
 
 @naming_formats
@@ -287,6 +274,95 @@ def writer(
     return named
 
 
+def _read(
+    finished: Callable[[RawProfile, float | None], list[RawProfile]],
+    *,
+    file: str | Path,
+    format: str | None,
+    columns: Sequence[ColumnKey] | None,
+    recording: str | None,
+    units: Sequence[str] | None,
+    speed: float | None,
+    skip_lines: int | None,
+    first: float | None,
+    last: float | None,
+    across: Sequence[float] | None,
+    paths: Sequence[int] | None,
+    crop_rims: bool,
+    repair_gaps: float | None,
+    missing: Sequence[float] | None,
+    reverse: bool,
+) -> list[ReadProfile]:
+    """Read what `read_profile` is asked for; `finished` deals with what is missing."""
+    with checking() as check:
+        path = check.file("file", file)
+        if repair_gaps is not None:
+            repair_gaps = check.positive("repair_gaps", repair_gaps, "m")
+        wanted = None if across is None else check.array("across", across, "m", (None,))
+        if wanted is not None and not check.faults and not wanted.size:
+            check.refuse("across", "must name at least one lateral position [m]")
+        if columns is not None and not (
+            isinstance(columns, (list, tuple)) and all(type(column) in (str, int) for column in columns)
+        ):
+            check.refuse("columns", f"must be a list of names or numbers of columns, got {shown(columns)}")
+        if units is not None and not (
+            isinstance(units, (list, tuple)) and len(units) > 1 and all(isinstance(unit, str) for unit in units)
+        ):
+            check.refuse(
+                "units", f"must be a list of units, of the stations and of the elevations, got {shown(units)}"
+            )
+        if speed is not None:
+            speed = check.positive("speed", speed, "m/s")
+        if skip_lines is not None:
+            skip_lines = check.whole("skip_lines", skip_lines, least=0)
+        for name, value in {"crop_rims": crop_rims, "reverse": reverse}.items():
+            if not isinstance(value, bool):
+                check.refuse(name, f"must be true or false, got {shown(value)}")
+        markers = () if missing is None else tuple(check.array("missing", missing, "", (None,)).tolist())
+        first = first if first is None else check.finite("first", first, "m")
+        last = last if last is None else check.finite("last", last, "m")
+        if recording is not None:
+            recording = check.text("recording", recording)
+        if format is not None:
+            format = check.choice("format", format, FORMATS)
+    try:
+        form = _recognised(path, format)
+        if recording is not None and not form.several:
+            raise ValueError(f"is {form.title}, which holds one recording: {option('recording')} has no choice")
+        raw = form.read(path, _understood_by(form, Wanted(columns, recording, units, skip_lines or 0, markers)))
+        raw = _at_speed(raw, speed)
+        raw = _turned(raw) if reverse else raw
+        # What is chosen is chosen before anything is checked: what lies outside may be as it likes.
+        raw = _cropped(raw, first, last)
+        if wanted is not None:
+            raw = _on_paths(raw, wanted)
+        if crop_rims:
+            raw = _cropped_sides(raw) if wanted is None and raw.across is not None else raw
+        raw = _selected(raw, paths)
+        raw = _cropped_ends(raw) if crop_rims else raw
+        return [_profile_of(path.name, each) for each in finished(raw, repair_gaps)]
+    except ParameterError as error:
+        if {fault.name for fault in error.faults} <= {"first", "last", "paths"}:
+            raise
+        raise ValueError(f"{path}: {error}") from None
+    except OSError as error:
+        raise ValueError(f"cannot read {path}: {error.strerror or error}") from None
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _profile_of(name: str, raw: RawProfile) -> ReadProfile:
+    """Make a profile of what was read of a file, and the sentence about it."""
+    profile = Profile(
+        raw.stations,
+        raw.elevations[:, 0] if raw.same_across else raw.elevations,
+        source=f"{name} ({raw.source})" if raw.source else name,
+        steps=raw.steps,
+        across=None if raw.across is None else tuple(raw.across.tolist()),
+    )
+    return ReadProfile(profile, _sentence(name, profile, raw))
+
+
 def _by_ending(path: Path) -> Format | None:
     return next((form for form in FORMATS.values() if path.suffix.lower() in form.endings), None)
 
@@ -329,6 +405,19 @@ def _at_speed(raw: RawProfile, speed: float | None) -> RawProfile:
     return raw._replace(stations=raw.stations * speed, steps=(*raw.steps, done), timed="")
 
 
+def _turned(raw: RawProfile) -> RawProfile:
+    """Turn a profile round: the last row first, and what was left at the right."""
+    stations, place, last = raw.stations[::-1], raw.place, len(raw.stations) - 1
+    rose = stations.size > 0 and stations[0] > stations[-1]
+    return raw._replace(
+        stations=stations[0] + stations[-1] - stations if rose else stations,
+        elevations=raw.elevations[::-1],
+        across=None if raw.across is None else -raw.across,
+        place=lambda row: place(last - row),
+        steps=(*raw.steps, "turned round, as driven the other way: what was left is right"),
+    )
+
+
 def _on_paths(raw: RawProfile, across: FloatArray) -> RawProfile:
     """Interpolate a grid at lateral positions."""
     if raw.across is None:
@@ -364,7 +453,7 @@ def _cropped(raw: RawProfile, first: float | None, last: float | None) -> RawPro
     if first is None and last is None:
         return raw
     begin, end = within(raw.stations, first, last)
-    return _part(raw, begin, end)._replace(steps=(*raw.steps, cropping(raw.stations, first, last)))
+    return part(raw, begin, end)._replace(steps=(*raw.steps, cropping(raw.stations, first, last)))
 
 
 def _selected(raw: RawProfile, paths: Sequence[int] | None) -> RawProfile:
@@ -377,16 +466,6 @@ def _selected(raw: RawProfile, paths: Sequence[int] | None) -> RawProfile:
         across=None if raw.across is None or raw.across.size != raw.elevations.shape[1] else raw.across[numbers],
         same_across=False,
         steps=(*raw.steps, selecting(numbers)),
-    )
-
-
-def _part(raw: RawProfile, first: int, last: int) -> RawProfile:
-    """Take the stations from one number to another, which is not among them."""
-    place = raw.place
-    return raw._replace(
-        stations=raw.stations[first:last],
-        elevations=raw.elevations[first:last],
-        place=lambda row: place(row + first),
     )
 
 
@@ -420,85 +499,7 @@ def _cropped_ends(raw: RawProfile) -> RawProfile:
     if (first, last) == (0, whole):
         return raw
     said = f"left out {count(first, 'station')} at the beginning and {whole - last} at the end"
-    return _part(raw, first, last)._replace(steps=(*raw.steps, said))
-
-
-def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
-    """Fill gaps that may be filled, and refuse what is missing otherwise."""
-    bad = np.flatnonzero(~np.isfinite(raw.stations))
-    if bad.size:
-        raise ValueError(f"{raw.place(int(bad[0]))}: there is no station, got {raw.stations[bad[0]]}")
-    falls = np.flatnonzero(np.diff(raw.stations) <= 0)
-    if falls.size:
-        n = int(falls[0])
-        one, next_one = told_apart(raw.stations[n], raw.stations[n + 1])
-        raise ValueError(f"{raw.place(n + 1)}: distance must increase, got {one} m followed by {next_one} m")
-    infinite = np.argwhere(np.isinf(raw.elevations))
-    if infinite.size:
-        raise ValueError(f"{raw.place(int(infinite[0][0]))}: elevation must be finite, got inf")
-    gaps = [gap for path in range(raw.elevations.shape[1]) for gap in _gaps(raw, path)]
-    if not gaps:
-        return raw
-    missing = sum(gap.missing for gap in gaps)
-    first, longest = gaps[0], max(gaps, key=lambda gap: gap.length)
-    if repair_gaps is None:
-        raise ValueError(
-            f"{raw.place(first.first)}: no elevation {_at(raw, first)}; in all "
-            f"{count(missing, 'elevation is', 'elevations are')} missing in {count(len(gaps), 'gap')}, the longest "
-            f"{_long(longest)} {_at(raw, longest)}. {option('repair_gaps')} fills gaps up to a length, "
-            f"{option('crop_rims')} leaves out the rims of a grid"
-        )
-    if longest.length > repair_gaps:
-        long, allowed = told_apart(longest.length, repair_gaps, digits=4)
-        raise ValueError(
-            f"{raw.place(longest.first)}: the gap {_at(raw, longest)} is "
-            f"{f'{long} m long' if np.isfinite(longest.length) else _long(longest)}, and "
-            f"{option('repair_gaps')} allows {allowed} m"
-        )
-    elevations = raw.elevations.copy()
-    for path in {gap.path for gap in gaps}:
-        column = elevations[:, path]
-        there = ~np.isnan(column)
-        column[~there] = np.interp(raw.stations[~there], raw.stations[there], column[there])
-    done = (
-        f"filled {count(missing, 'missing elevation')} in {count(len(gaps), 'gap')} by straight lines, the longest "
-        f"{_long(longest)} "
-        f"{_at(raw, longest)}"
-    )
-    return raw._replace(elevations=elevations, steps=(*raw.steps, done))
-
-
-class _Gap(NamedTuple):
-    """Consecutive stations of one path without an elevation."""
-
-    path: int
-    first: int
-    missing: int
-    length: float  # between the elevations on either side [m]; inf at an end
-
-
-def _gaps(raw: RawProfile, path: int) -> list[_Gap]:
-    missing = np.isnan(raw.elevations[:, path])
-    if not missing.any():
-        return []
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]])))
-    bounds = np.concatenate([[-np.inf], raw.stations, [np.inf]])
-    return [
-        _Gap(path, int(first), int(end - first), float(bounds[end + 1] - bounds[first]))
-        for first, end in zip(edges[::2], edges[1::2], strict=True)
-    ]
-
-
-def _long(gap: _Gap) -> str:
-    return f"{gap.length:.4g} m long" if np.isfinite(gap.length) else "open, at an end of the profile"
-
-
-def _at(raw: RawProfile, gap: _Gap) -> str:
-    """Say where a gap begins, and on which path."""
-    station = f"at {raw.stations[gap.first]:g} m"
-    if raw.across is not None:
-        return f"{station}, {raw.across[gap.path]:g} m across"
-    return station if raw.elevations.shape[1] == 1 else f"{station} on path {gap.path}"
+    return part(raw, first, last)._replace(steps=(*raw.steps, said))
 
 
 def _sentence(name: str, profile: Profile, raw: RawProfile) -> str:

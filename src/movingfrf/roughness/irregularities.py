@@ -113,7 +113,7 @@ def pothole(*, depth: float, width: float, edge: float, at: float, length: float
         Distance from rim to rim [m].
     edge : float
         Distance over which the road falls to the floor, and rises again [m]; at most half of the width. A wheel
-        cannot follow edges that are sharper than itself: see `rolled`.
+        cannot follow edges that are sharper than itself: give its contact a `footprint`.
     at : float
         Distance at which it begins [m].
     length : float
@@ -169,7 +169,8 @@ def faulted_slabs(
     spacing : float
         Distance between joints [m].
     edge : float
-        Distance over which the road drops [m], centred at the joint; at most half of the spacing. See `rolled`.
+        Distance over which the road drops [m], centred at the joint; at most half of the spacing. A wheel cannot
+        follow edges that are sharper than itself: give its contact a `footprint`.
     length : float
         Length of the profile [m].
     at : float

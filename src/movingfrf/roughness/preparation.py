@@ -9,7 +9,7 @@ from typing import Any
 
 from movingfrf._basics.checks import ParameterError, checking
 from movingfrf._basics.documented import documented
-from movingfrf.roughness.files import ReadProfile, read_profile
+from movingfrf.roughness.files import ReadProfile, read_pieces, read_profile
 from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.roughness.steps import (
     cropped,
@@ -115,10 +115,21 @@ def read_prepared(file: Path, **keys: Any) -> ReadProfile:
 
     What both take is done in reading, before anything is checked.
     """
-    reading = inspect.signature(read_profile).parameters
-    steps = {key: keys.pop(key) for step in STEPS for key in step.keys if key in keys and key not in reading}
+    steps = _taken_out(keys)
     found, understood = read_profile(file, **keys)
     return ReadProfile(prepared(found, **steps), understood)
+
+
+def read_prepared_pieces(file: Path, **keys: Any) -> list[ReadProfile]:
+    """Read the pieces of a profile between its gaps, and prepare each."""
+    steps = _taken_out(keys)
+    return [ReadProfile(prepared(found, **steps), understood) for found, understood in read_pieces(file, **keys)]
+
+
+def _taken_out(keys: dict[str, Any]) -> dict[str, Any]:
+    """Take the keys of steps out of those of reading, and return them."""
+    reading = inspect.signature(read_profile).parameters
+    return {key: keys.pop(key) for step in STEPS for key in step.keys if key in keys and key not in reading}
 
 
 def _done(step: Step, profile: Profile, arguments: dict[str, Any]) -> Profile:

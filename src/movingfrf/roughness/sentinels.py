@@ -24,7 +24,7 @@ class Sentinel(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Standing:
-    """How far a value must stand out; in brackets, between what each number is safe."""
+    """How far a value, or a step between stations, must stand out; in brackets, where each number is safe."""
 
     # Times the largest step between stations of everything else: kerbs, potholes, humps and their neighbours differ
     # by one step, and a marker by hundreds [3 to 100].
@@ -34,6 +34,13 @@ class Standing:
     # Markers as they are written: nines alone, those of log files, the ends of whole numbers.
     markers: re.Pattern[str] = re.compile(r"9{3,}(\.9+)?|999\.25|3276[78]|65535|214748364[78]")
     most: int = 4  # different markers that are looked for on one path, low and high [a convention]
+    # Times the step that nearly all do not exceed, from which on stations are missing: survey by hand has twice, a
+    # logger that drops points three times [3 to 20].
+    hole: float = 5.0
+    # Share of the steps that are nearly all: where more are long, the profile is meant so, as tracks of GPS and
+    # shapes with dense edges are [0.8 to 0.95].
+    nearly_all: float = 0.9
+    most_put: int = 4  # stations put into holes at most, times those of the file: memory does not matter [1 to 10]
 
 
 STANDING = Standing()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from movingfrf._basics.checks import checking
@@ -212,13 +213,15 @@ CATALOGUE: dict[str, Entry] = {
 }
 
 
-def catalogue(name: str) -> Vehicle:
+def catalogue(name: str, *, footprint: float | Sequence[float] | None = None) -> Vehicle:
     """Take a vehicle from the catalogue; `movingfrf vehicles` lists and describes them.
 
     Parameters
     ----------
     name : str
         Its name.
+    footprint : float or sequence of float, optional
+        Length of the footprint of every contact, or of each [m], in place of its own.
 
     Returns
     -------
@@ -228,7 +231,7 @@ def catalogue(name: str) -> Vehicle:
     Raises
     ------
     ValueError
-        If there is none of that name.
+        If there is none of that name, a footprint is negative, or there is not one for each contact.
 
     Examples
     --------
@@ -237,4 +240,14 @@ def catalogue(name: str) -> Vehicle:
     """
     with checking() as check:
         name = check.choice("name", name, CATALOGUE)
-    return CATALOGUE[name].make()
+    vehicle = CATALOGUE[name].make()
+    if footprint is None:
+        return vehicle
+    with checking() as check:
+        lengths = check.spread("footprint", footprint, "m", (len(vehicle.contacts),))
+        if not check.faults:
+            check.not_negative("footprint", float(lengths.min()), "m")
+    contacts = [
+        replace(own, footprint=length) for own, length in zip(vehicle.contacts, lengths.tolist(), strict=True)
+    ]
+    return replace(vehicle, contacts=contacts)

@@ -116,7 +116,9 @@ def raw_profile(
     (_, first), *others = pick.elevations
     return RawProfile(
         scaled(stations, scales[0]),
-        np.concatenate([scaled(part, s) for part, s in zip(parts, scales[1:], strict=True)], axis=1),
+        np.concatenate(
+            [scaled(part, s, wanted.missing) for part, s in zip(parts, scales[1:], strict=True)], axis=1
+        ),
         f"{kind} with stations {name!r} and elevations {', '.join(repr(called) for called, _ in pick.elevations)} "
         f"in {', '.join(sorted(stated))}" + (f", without {listed(pick.left)}" if pick.left else ""),
         across=None if across is None else scaled(across.load().ravel(), metres(across.unit or "m", "'across'")),

@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import nearest, option
 from movingfrf._basics.output import Content
@@ -69,6 +71,7 @@ class Wanted(NamedTuple):
     recording: str | None = None  # by name; None: the only one
     units: Sequence[str] | None = None  # of the stations, then of the elevations, in place of those in the file
     skip_lines: int = 0  # lines at the beginning that are no part of the table
+    missing: tuple[float, ...] = ()  # values that stand for no elevation, as the file has them
 
 
 class Recording(NamedTuple):
@@ -130,8 +133,11 @@ def unit_in(name: str) -> str | None:
     return found.group(1) if found else None
 
 
-def scaled(values: FloatArray, scale: float) -> FloatArray:
-    """Convert to metres; a number stays as it is where it is in metres already."""
+def scaled(values: FloatArray, scale: float, missing: Sequence[float] = ()) -> FloatArray:
+    """Convert to metres, nan where a value stands for none; what is in metres already stays as it is."""
+    for marker in missing:
+        # Of a marker with decimals single precision keeps seven digits [1e-7 to 1e-5].
+        values = np.where(np.isclose(values, marker, rtol=1e-6, atol=0.0), np.nan, values)
     return values if scale == 1.0 else values * scale
 
 

@@ -84,10 +84,11 @@ def table(data: bytes, wanted: Wanted) -> RawProfile:
     def place(row: int) -> str:
         return f"line {line_of(data, encoding, rows, row)}"
 
-    values = [scaled(found.values[:, n], scale) for n, scale in zip(taken.used, scales, strict=True)]
+    along, *columns = (found.values[:, n] for n in taken.used)
+    elevations = [scaled(column, scale, wanted.missing) for column, scale in zip(columns, scales[1:], strict=True)]
     return RawProfile(
-        values[0],
-        np.stack(values[1:], axis=1),
+        scaled(along, scales[0]),
+        np.stack(elevations, axis=1),
         _words(rows, head, taken, stated, wanted.skip_lines),
         place=place,
         same_across=len(taken.used) == 2,

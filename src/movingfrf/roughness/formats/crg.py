@@ -11,7 +11,7 @@ import numpy as np
 from movingfrf._basics.checks import option
 from movingfrf._basics.output import Content
 from movingfrf._basics.undoing import scratch
-from movingfrf.roughness.formats.base import Format, RawProfile, Wanted
+from movingfrf.roughness.formats.base import Format, RawProfile, Wanted, scaled
 from movingfrf.roughness.profile import Profile
 
 
@@ -43,7 +43,10 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
         # what is not finite.
         with np.errstate(all="ignore"):
             road = crg.read(path, check=False)
-            stations, across, elevations = np.array(road.u), np.array(road.v[::-1]), road.surface_z()[:, ::-1]
+            stations, across = np.array(road.u), np.array(road.v[::-1])
+            # Markers stand in the grid, before slope and banking are added.
+            absent = np.isnan(scaled(np.array(road.z)[:, ::-1], 1.0, wanted.missing))
+            elevations = np.where(absent, np.nan, road.surface_z()[:, ::-1])
     except (OverflowError, ZeroDivisionError, IndexError, KeyError, TypeError, OSError) as error:
         raise ValueError(f"is not an OpenCRG file that can be read: {type(error).__name__}: {error}") from None
     except ValueError as error:

@@ -71,7 +71,9 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
         )
     if not step > 0:
         raise ValueError(f"must have a positive step between samples, got {step!r}")
-    elevations = np.stack([scaled(values[:, n], s) for n, s in zip(used, scales, strict=True)], axis=1)
+    elevations = np.stack(
+        [scaled(values[:, n], s, wanted.missing) for n, s in zip(used, scales, strict=True)], axis=1
+    )
     said = sorted({unit or "metres, since no unit is given" for unit in taken})
     understood = (
         f"ERD with {'text' if STORED[key] is None else f'binary numbers ({STORED[key]})'}, channels "

@@ -20,6 +20,7 @@ from movingfrf.roughness.formats.base import (
     Wanted,
     bytes_of,
     chosen_recording,
+    scaled,
     told_apart_by_number,
 )
 
@@ -131,7 +132,7 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
     short = len(lines) - len(long)
     return RawProfile(
         along[onward],
-        height[onward][:, None],
+        scaled(height[onward][:, None], 1.0, wanted.missing),
         f"GPX {line.kind} {name!r} of {count(height.size, 'point')}, horizontal distance on the ellipsoid of WGS 84"
         + (f", {said}" if standing else "")
         + (f", {count(short, 'line')} of less than {least} points beside it" if short else ""),
