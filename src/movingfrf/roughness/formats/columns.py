@@ -73,6 +73,7 @@ def table(data: bytes, wanted: Wanted) -> RawProfile:
         taken = _asked_for(head, wanted.columns, found.texts)
     else:
         taken = _taken(head, found.values, found.texts, there)
+    found.require(taken.used)
     if wanted.units is not None:
         taken = taken._replace(timed=kind_of_unit(wanted.units[0]) == "time")
     stated = units_taken([head.units[n] for n in taken.used], wanted.units)
@@ -116,7 +117,7 @@ def read_numbers(file: str | Path) -> FloatArray:
     try:
         data, encoding = as_text(bytes_of(Path(file)))
         rows, head = _laid_out(data, encoding)
-        values, texts = numbers(data, encoding, rows)
+        values, texts, _ = numbers(data, encoding, rows)
         if texts:
             raise ValueError(f"column {head.names[min(texts)]!r} holds no numbers")
         bad = np.flatnonzero(~np.isfinite(values).all(axis=1))

@@ -7,7 +7,7 @@ import io
 import re
 import warnings
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import NamedTuple
@@ -27,6 +27,7 @@ class Writing:
         (";", "semicolons"),
         ("\t", "tabs"),
         (",", "commas"),
+        ("|", "vertical bars"),
         (None, "spaces"),
     )
     # Fortran writes D for E, and leaves it out before an exponent of three digits.
@@ -102,6 +103,12 @@ class Numbers(NamedTuple):
 
     values: FloatArray  # (row, column), nan where there is no number
     texts: frozenset[int]  # columns that hold no numbers
+    faults: Mapping[int, Line] = {}  # of the other columns that hold a text somewhere: where, and what to say of it
+
+    def require(self, columns: Iterable[int]) -> None:
+        """Refuse a text among the numbers of some columns."""
+        if faults := [self.faults[n] for n in columns if n in self.faults]:
+            raise ValueError(f"line {min(faults).number}: {min(faults).text}")
 
 
 def as_text(data: bytes) -> tuple[bytes, str]:
@@ -252,7 +259,7 @@ def find_table(data: bytes, encoding: str) -> Table:
         if any(is_number(word) for word in re.split(r"[;,\s]+", line.text) if word):
             raise ValueError(
                 f"line {line.number}: expected a station and at least one elevation, all numbers, got "
-                f"{line.text[:60]!r}{grouped(line.text.split(';'))}"
+                f"{line.text[:60]!r}{grouped([field for field in line.text.split(';') if not is_number(field)])}"
             )
     raise ValueError(
         f"no numbers in the first {len(plain)} lines: expected a station and at least one elevation in each"
@@ -448,9 +455,9 @@ def _whole(data: bytes, encoding: str, table: Table, rows: IntArray) -> bool:
 
 
 def _line_by_line(data: bytes, encoding: str, table: Table) -> Numbers:
-    """Read rows one by one; a column of more texts than numbers holds none, any other text is a fault."""
+    """Read rows one by one; a column of more texts than numbers holds none, any other text is a fault of its own."""
     values = array("d")
-    texts: dict[int, list[Line]] = {n: [] for n in range(table.width)}
+    texts: dict[int, Line] = {}
     there = [0] * table.width
     fault = None
     for line in _rows(data, encoding, table):
@@ -458,33 +465,42 @@ def _line_by_line(data: bytes, encoding: str, table: Table) -> Numbers:
         if len(fields) != table.width:
             fault = Line(line.number, f"expected {table.width} columns as before, got {len(fields)}")
             break
-        if any(is_number(word) for field in fields for word in re.split(r"[;,\s]+", field.partition("\n")[2])):
+        if any(_is_row(part, table) for field in fields for part in field.split("\n")[1:]):
             fault = Line(line.number, f"a quotation mark is not closed in its line, got {line.text[:60]!r}")
             break
         for n, field in enumerate(fields):
             value = number_in(field, table.decimal)
             if value is None:
-                texts[n] = [*texts[n], line] if not texts[n] else texts[n]
+                texts.setdefault(n, line)
                 there[n] -= 1
                 value = float("nan")
             elif value == value:
                 there[n] += 1
             values.append(value)
-    left = frozenset(n for n, found in texts.items() if found and (there[n] < 0 or n in table.texts))
-    wrong = [found[0] for n, found in texts.items() if found and n not in left]
-    faults = [Line(line.number, _unreadable(line, table)) for line in wrong] + ([fault] if fault else [])
-    if faults:
-        first = min(faults)
+    left = frozenset(n for n in texts if there[n] < 0 or n in table.texts)
+    faults = {n: Line(line.number, _unreadable(line, table)) for n, line in texts.items() if n not in left}
+    if fault:
+        first = min([*faults.values(), fault])
         raise ValueError(f"line {first.number}: {first.text}")
-    return Numbers(np.array(values).reshape(-1, table.width), left)
+    return Numbers(np.array(values).reshape(-1, table.width), left, faults)
+
+
+def _is_row(text: str, table: Table) -> bool:
+    """Whether a line within quotation marks looks like a row that they swallowed."""
+    kinds = _kinds(split(text, table.separator))
+    return kinds.count("n") > 1 or (len(kinds) == table.width and "n" in kinds)
 
 
 def _unreadable(line: Line, table: Table) -> str:
-    return f"expected numbers separated by {table.said}, got {line.text[:60]!r}{grouped(table.fields(line.text))}"
+    fields = table.fields(line.text)
+    said = f"expected numbers separated by {table.said}, got {line.text[:60]!r}"
+    if not any(map(is_number, fields)):  # like names
+        return f"{said}; {option('skip_lines')} leaves out lines above the table"
+    return said + grouped([field for field in fields if number_in(field, table.decimal) is None])
 
 
 def grouped(fields: Sequence[str]) -> str:
-    """Say that thousands are separated, where a field looks like it."""
+    """Say that thousands are separated, where one of the fields that are damaged looks like it."""
     found = any(WRITING.thousands.fullmatch(field.strip()) for field in fields)
     return "; what separates thousands cannot be told from a decimal sign" if found else ""
 

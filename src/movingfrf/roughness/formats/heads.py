@@ -67,7 +67,7 @@ def columns_of(table: Table) -> Columns:
     if named and (any(map(is_number, named.fields)) or (not plain and any(len(row.fields) > 1 for row in above))):
         raise ValueError(
             f"line {named.line.number}: expected numbers separated by {table.said}, got {named.line.text[:60]!r}"
-            f"{grouped(named.fields)}; {option('skip_lines')} leaves out lines above the table"
+            f"{grouped([field for field in named.fields if not is_number(field)])}; {option('skip_lines')} leaves out lines above the table"
         )
     if named and len(named.fields) < table.width:
         raise ValueError(
