@@ -12,7 +12,6 @@ import movingfrf as mf
 from movingfrf.commands.main import main
 from movingfrf.metrics.profile import describe_profile
 from movingfrf.roughness.formats import fields
-from movingfrf.roughness.formats.columns import read_numbers
 from tests.fuzz_readers import damaged
 from tests.reader_parts import written
 from tests.spreadsheets import ods, xlsx
@@ -379,16 +378,6 @@ def test_the_fast_way_is_the_slow_one(text):
             assert np.array_equal(found, fields._line_by_line(data, encoding, rows).values, equal_nan=True), state
             fast += 1
     assert fast > 4
-
-
-def test_numbers_alone_are_read_from_the_same_texts(tmp_path):
-    text = "Force history\n# made by hand\ntime [s];force [N]\n" + lines("{x};{z}D+03 // joint")
-    assert (
-        read_numbers(written(tmp_path, "f.txt", text)).tolist()
-        == np.transpose([STATIONS, 1e3 * np.array(HEIGHTS)]).tolist()
-    )
-    with pytest.raises(ValueError, match="column 'c' holds no numbers"):
-        read_numbers(written(tmp_path, "f.txt", "a,b,c\n" + lines("{x},{z},joint")))
 
 
 # Spreadsheets.
