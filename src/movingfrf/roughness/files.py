@@ -11,11 +11,11 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ParameterError, checking, option, shown, spelt
 from movingfrf._basics.output import Content, behind_links, replacing
-from movingfrf._basics.wording import count, told_apart
+from movingfrf._basics.wording import count, place, told_apart
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file, sheets
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, Wanted
-from movingfrf.roughness.profile import Profile, require_profile
+from movingfrf.roughness.profile import SLACK, Profile, require_profile
 from movingfrf.roughness.steps.cropped import cropping, within
 from movingfrf.roughness.steps.selected import path_numbers, selecting
 
@@ -433,7 +433,8 @@ def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
             f"{_long(longest)} {_at(raw, longest)}. {option('repair_gaps')} fills gaps up to a length, "
             f"{option('crop_rims')} leaves out the rims of a grid"
         )
-    if longest.length > repair_gaps:
+    # As it is told, so that what the message names is enough.
+    if float(f"{longest.length:.4g}") > repair_gaps * (1 + SLACK):
         long, allowed = told_apart(longest.length, repair_gaps, digits=4)
         raise ValueError(
             f"{raw.place(longest.first)}: the gap {_at(raw, longest)} is "
@@ -480,9 +481,9 @@ def _long(gap: _Gap) -> str:
 
 def _at(raw: RawProfile, gap: _Gap) -> str:
     """Say where a gap begins, and on which path."""
-    station = f"at {raw.stations[gap.first]:g} m"
+    station = f"at {place(raw.stations[gap.first])} m"
     if raw.across is not None:
-        return f"{station}, {raw.across[gap.path]:g} m across"
+        return f"{station}, {place(raw.across[gap.path])} m across"
     return station if raw.elevations.shape[1] == 1 else f"{station} on path {gap.path}"
 
 

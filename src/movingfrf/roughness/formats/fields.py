@@ -511,7 +511,7 @@ def _unreadable(line: Line, table: Table) -> str:
     if not any(map(is_number, fields)):  # like names
         above = line.number - table.first < WRITING.alike
         skip = f"{option('skip_lines')} leaves out lines above the table"
-        return f"{said}; {skip if above else 'a second table needs a file of its own'}"
+        return f"{said}; {skip if above else 'a second table would need a file of its own'}"
     return said + grouped([field for field in fields if number_in(field, table.decimal) is None])
 
 
