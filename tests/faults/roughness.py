@@ -330,7 +330,38 @@ FAULTS = [
         "or False",
     ),
     Fault("gaps filled unasked", "roughness/files.py", "if repair_gaps is None:", "if False:"),
-    Fault("gaps of any length filled", "roughness/files.py", "if longest.length > repair_gaps:", "if False:"),
+    Fault("gaps of any length filled", "roughness/files.py", "> repair_gaps * (1 + SLACK):", "> np.inf:"),
+    Fault(
+        "a gap a little longer than it is told",
+        "roughness/files.py",
+        'float(f"{longest.length:.4g}")',
+        "longest.length",
+    ),
+    Fault(
+        "rows in quotation marks",
+        "roughness/formats/fields.py",
+        'return kinds.count("n") > 1 or (',
+        "return (False and ",
+    ),
+    Fault(
+        "a text among elevations", "roughness/formats/columns.py", "found.require(taken.used)", "found.require(())"
+    ),
+    Fault(
+        "a text in an ERD file",
+        "roughness/formats/fields.py",
+        "found.require(range(table.width))",
+        "found.require(())",
+    ),
+    Fault("millinewton for meganewton", "roughness/formats/roles.py", '"MN": 1e6', '"MN": 1e-3'),
+    Fault(
+        "the first column for the time",
+        "scenarios/force_files.py",
+        "if called := [",
+        "if False and [",
+    ),
+    Fault("markers among forces", "scenarios/force_files.py", "(marker.value < 0 or", "(False and"),
+    Fault("another table beside", "roughness/formats/sheets.py", "few = 0.25", "few = 2.0"),
+    Fault("netCDF 3 not scaled", "roughness/formats/classic.py", "found * scale[0]", "found"),
     Fault("high pass of first order", "roughness/steps/base.py", "order=FILTER.gentle", "order=1"),
     Fault(
         "resampled with aliases",
