@@ -492,7 +492,7 @@ def _sentence(name: str, profile: Profile, raw: RawProfile) -> str:
     step = profile.even_step()
     steps = np.diff(stations)
     spacing = f"{step:.4g}" if step is not None else "–".join(told_apart(steps.min(), steps.max(), digits=4))
-    first, last = told_apart(stations[0], stations[-1])
+    first, last = place(stations[0]), place(stations[-1])
     return (
         f"{name}: {stations.size} stations from {first} m to {last} m every {spacing} m, "
         f"{count(profile.paths, 'path')}, elevation {elevation.min():g} to {elevation.max():g} m, {raw.understood}"

@@ -90,16 +90,17 @@ def _unit(table: TextTable, column: int) -> str | None:
 
 
 def _time(table: TextTable) -> int:
-    """Find the column of times: the one that is called so, or the first."""
+    """Find the column of times: one that is called so and increases, best with a unit, or else the first."""
     numeric = [n for n in range(len(table.names)) if n not in table.found.texts]
+    values = table.found.values
     if called := [n for n in numeric if table.heads[n].role == "time"]:
-        return next((n for n in called if table.heads[n].unit), called[0])
+        increasing = [n for n in called if (np.diff(values[:, n]) > 0).all()]
+        return min(increasing or called, key=lambda n: (table.heads[n].unit is None, n))
     if any(each.role == "time" for each in table.heads):
         raise ValueError("the times must be numbers [s]")
     able = [n for n in numeric if table.heads[n].role == "unknown" and table.heads[n].unit is None]
     if not able or able[0] != 0:
-        raise ValueError(f"none of the columns {listed(table.names)} is a time")
-    values = table.found.values
+        raise ValueError(f"none of the columns {listed(table.names)} is called a time")
     if not table.named and len(able) > 2 and counts(values[:, 0]) and (np.diff(values[:, able[1]]) > 0).all():
         raise ValueError("the first column may be a time [s] or a number of the row: a line of names above tells")
     return 0
