@@ -82,5 +82,7 @@ def test_what_is_no_force_over_time(tmp_path, text, options, message):
 
 
 def test_a_pulse_may_have_any_height(tmp_path):
+    steady = "time,force\n" + "".join(f"{t},9999\n" for t in TIME)
+    assert tabulated(file=written(tmp_path, "steady.csv", steady))(TIME)[3] == 9999.0
     text = "time,force\n" + "".join(f"{t},{9999 if n == 3 else 0}\n" for n, t in enumerate(TIME))
     assert tabulated(file=written(tmp_path, "force.csv", text))(TIME)[3] == 9999.0

@@ -65,7 +65,7 @@ def read_force(file: Path, column: int | None, skip_lines: int) -> Force:
         written = f"{abs(marker.value):.6f}".rstrip("0").rstrip(".")
         others = force[force != marker.value]
         # A pulse between forces that do not change may have any value.
-        if STANDING.markers.fullmatch(written) and (marker.value < 0 or np.ptp(others) > 0):
+        if STANDING.markers.fullmatch(written) and (marker.value < 0 or (others != others[:1]).any()):
             raise ValueError(
                 f"{table.place(marker.first)}: {plain(marker.value)} in column {table.names[taken]!r} stands for a "
                 "missing value: leave such rows out"

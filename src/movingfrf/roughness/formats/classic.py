@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,6 +14,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf.roughness.formats.arrays import Array
+from movingfrf.roughness.formats.base import bytes_of
 from movingfrf.roughness.formats.hdf import HdfContents
 
 
@@ -43,7 +45,8 @@ def opened(path: Path) -> Iterator[HdfContents]:
     from scipy.io import netcdf_file
 
     try:
-        with warnings.catch_warnings(), netcdf_file(str(path), mmap=False) as file:
+        # From memory, which gives what is there; from a disk as much is prepared for as a damaged file claims.
+        with warnings.catch_warnings(), netcdf_file(io.BytesIO(bytes_of(path)), mmap=False) as file:
             warnings.simplefilter("ignore")
             kept = {name: item for name, item in file.variables.items() if item.data.dtype.kind in "iuf"}
             arrays = {

@@ -23,17 +23,15 @@ DAMAGED = (OSError, RuntimeError, KeyError, TypeError, OverflowError, SystemErro
 
 def text(value: Any) -> str:
     """Read text of an attribute; empty if it is something else."""
-    if isinstance(value, np.ndarray) and value.size == 1:
-        value = value.ravel()[0]
     if isinstance(value, bytes):
         return value.decode("utf-8", "replace")
     return value if isinstance(value, str) else ""
 
 
-def unit(item: h5py.Dataset) -> str:
-    """Read the unit of an array, however its attribute is written."""
-    names = (name for name in item.attrs if name.lower() in ("units", "unit", "einheit"))
-    return next(filter(None, (text(item.attrs[name]) for name in names)), "")
+def unit_of(item: h5py.Dataset) -> str:
+    """Read the unit, whatever its attribute is called, and whether it is a text or an array of one."""
+    found = (np.asarray(item.attrs[name]).ravel() for name in item.attrs if name.lower() in ("units", "unit"))
+    return next((text(value[0]) for value in found if value.size == 1), "")
 
 
 def columns(item: h5py.Dataset) -> dict[str, np.ndarray]:
@@ -135,7 +133,7 @@ def extract(file: Path, folder: Path, most: float) -> None:
                 np.save(made, found)
                 keep(folder / f"{len(listed)}.npy", made.getbuffer())
                 full = f"{name}.{part}" if part else name
-                listed.append({"name": full, "shape": found.shape, "unit": "" if part else unit(item)})
+                listed.append({"name": full, "shape": found.shape, "unit": "" if part else unit_of(item)})
         attributes = {name: text(opened.attrs.get(name, "")) for name in ("source", "steps")}
     content = {"arrays": listed, "attributes": attributes, "unread": unread}
     keep(folder / "index.json", json.dumps(content).encode())
