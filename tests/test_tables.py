@@ -544,7 +544,10 @@ def test_cells_beside_the_table_of_a_sheet(tmp_path, calamine):
     profile, understood = mf.read_profile(xlsx(tmp_path / "road.xlsx", {"A": rows}))
     assert profile.elevation == pytest.approx(1e-3 * (np.arange(31) % 3))
     assert "without the cells beside the table" in understood
-    # Another table is no such thing, whichever of the two is damaged.
+    # Another table is no such thing, however short it is, and whichever of the two is damaged.
+    rows = [[*row, "", *(row if n < 6 else ("", ""))] for n, row in enumerate(table)]
+    with pytest.raises(ValueError, match=r"road\.xlsx: "):
+        mf.read_profile(xlsx(tmp_path / "road.xlsx", {"A": rows}))
     for column in (1, 4):
         rows = [[*row, "", *row] for row in table]
         rows[20][column] = "x"

@@ -9,6 +9,7 @@ import csv
 import io
 import re
 import zipfile
+from collections.abc import Iterable
 from itertools import zip_longest
 from pathlib import Path
 from typing import NamedTuple
@@ -60,24 +61,36 @@ def _table(text: bytes, wanted: Wanted) -> RawProfile:
     try:
         return columns.table(text, wanted)
     except ValueError:
-        if (alone := _largest_block(text)) is None:
+        if (parts := _parted(text)) is None or _is_table(parts[1]):
             raise
-        found = columns.table(alone, wanted)
+        found = columns.table(parts[0], wanted)
         return found._replace(understood=f"{found.understood}, without the cells beside the table")
 
 
-def _largest_block(text: bytes) -> bytes | None:
-    """Take the first columns up to an empty one, if nearly all rows stand there; None if they do not."""
+def _is_table(text: bytes) -> bool:
+    try:
+        columns.table(text, Wanted())
+    except ValueError:
+        return False
+    return True
+
+
+def _parted(text: bytes) -> tuple[bytes, bytes] | None:
+    """Part the columns before an empty one from those behind; None if nearly all rows do not stand before it."""
     rows = list(csv.reader(io.StringIO(text.decode(), newline=""), delimiter="\t"))
     filled = [sum(bool(cell) for cell in column) for column in zip_longest(*rows, fillvalue="")]
-    if 0 not in filled or sum(filled[: filled.index(0)]) == 0:
+    if 0 not in filled[1:]:
         return None
-    first = filled.index(0)
+    first = filled.index(0, 1)
     few = 0.25  # of as many rows as the table, or it would be another one [0.05 to 0.5]
     if max(filled[first:]) > few * max(filled[:first]):
         return None
+    return _as_text(row[:first] for row in rows), _as_text(row[first + 1 :] for row in rows)
+
+
+def _as_text(rows: Iterable[list[str]]) -> bytes:
     made = io.StringIO()
-    csv.writer(made, delimiter="\t", lineterminator="\n").writerows(row[:first] for row in rows)
+    csv.writer(made, delimiter="\t", lineterminator="\n").writerows(rows)
     return made.getvalue().encode()
 
 
