@@ -73,7 +73,7 @@ def samples(folder: Path) -> dict[str, Path]:
 def _packed(road: Profile, folder: Path) -> None:
     """MATLAB files whose arrays are packed, of both versions."""
     import h5py
-    from scipy.io import savemat
+    from scipy.io import netcdf_file, savemat
 
     values = {"x": road.stations[:, None], "z": road.columns}
     savemat(folder / "packed.mat", values, do_compression=True)
@@ -82,6 +82,12 @@ def _packed(road: Profile, folder: Path) -> None:
     )
     savemat(folder / "structs.mat", {"road": {"x": road.stations, "z": road.columns}}, do_compression=True)
     savemat(folder / "matrix.mat", {"road": np.column_stack([road.stations, road.columns])})
+    np.save(folder / "matrix.npy", np.column_stack([road.stations, road.columns]))
+    with netcdf_file(folder / "classic.nc", "w") as file:
+        file.createDimension("x", len(road.stations))
+        for name, value in (("x", road.stations), ("z", np.int16(1e5 * road.columns[:, 0]))):
+            file.createVariable(name, value.dtype.str[1:], ("x",))[:] = value
+        file.variables["z"].scale_factor, file.variables["z"].units = 1e-5, b"m"
     with h5py.File(folder / "groups.nc", "w") as file:
         file["runs/x"], file["runs/z"] = road.stations, np.int16(1e5 * road.columns)
         file["runs/z"].attrs.update(

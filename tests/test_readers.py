@@ -89,7 +89,7 @@ def test_columns_by_name_and_by_number(tmp_path):
     [
         ("", "is empty"),
         ("x,z\n", "no numbers"),
-        ("1\n2\n3\n4\n", "line 1: expected a station and at least one elevation"),
+        ("1\n2\n3\n4\n", "line 1: expected two numbers or more"),
         ("0,1\n1,2\n2,x\n3,4\n", "line 3: expected numbers separated by commas, got '2,x'"),
         ("0,1\n1,2\n2\n3,4\n", "line 3: expected 2 columns as before, got 1"),
         ("0,1\n1,2\n2,1,7\n3,4\n", "line 3: expected 2 columns as before, got 3"),

@@ -329,8 +329,9 @@ def test_damaged_files_are_read_or_refused():
     """A small share of `python -m tests.fuzz_readers`, in processes of their own."""
     found = fuzz_readers.run(40, seed=7)
     # Every format and encoding that is written; GPX twice, a European CSV, packed MATLAB files of two versions,
-    # three with structs and a matrix, netCDF with a group, a text with remarks, a spreadsheet if it can be read.
-    assert len(found) == 10 + bool(find_spec("python_calamine")) + sum(
+    # three with structs and a matrix, netCDF with a group and netCDF 3, one array of NumPy, a text with remarks, a
+    # spreadsheet if it can be read.
+    assert len(found) == 12 + bool(find_spec("python_calamine")) + sum(
         len(form.encodings) for form in FORMATS.values() if form.made
     )
     assert not {name: counts for name, counts in found.items() if counts.keys() - {"read", "refused"}}

@@ -124,7 +124,7 @@ def test_forces_from_a_file(tmp_path):
     assert force[1000, 0] == pytest.approx(100.0)
     assert np.sqrt(np.mean(force[:, 1] ** 2)) == pytest.approx(100.0, rel=0.2)  # 2 s of 50 waves
     assert faults(text.replace("column = 2", "column = 3"), folder=tmp_path) == {
-        "loads.force[0].column": f"must be at most 2, the columns of {tmp_path / 'axles.csv'}, got 3"
+        "loads.force[0].column": "must be one of [1, 2], counted from 0, got 3"
     }
 
 

@@ -12,7 +12,6 @@ import movingfrf as mf
 from movingfrf.commands.main import main
 from movingfrf.metrics.profile import describe_profile
 from movingfrf.roughness.formats import fields
-from movingfrf.roughness.formats.columns import read_numbers
 from tests.fuzz_readers import damaged
 from tests.reader_parts import written
 from tests.spreadsheets import ods, xlsx
@@ -246,6 +245,81 @@ def test_what_stands_above_a_table(tmp_path, above, names, said):
     assert said in understood
 
 
+@pytest.mark.parametrize(
+    ("names", "form"),
+    [
+        ("Distance    Elevation\n   (m)        (mm)\n--------   ---------\n", "{x} {z}"),
+        ("Distance    Elevation\n--------   ---------\n   (m)        (mm)\n", "{x} {z}"),
+        ("Distance,Elevation\n=====,=====\nm,mm\n", "{x},{z}"),
+        ("distance,elevation,remark\n[m],[mm],text\n", "{x},{z},joint"),
+        ("time,distance,elevation\nhh:mm:ss,m,mm\n", "12:00:0{n},{x},{z}"),
+        ("distance;elevation;valid\nm;mm;yes/no\n", "{x};{z};yes"),
+        ("distance [m]|elevation [mm]\n", "{x}|{z}"),
+        ("sep=|\ndistance [m]|elevation [mm]|remark\n", "{x}|{z}|a, b"),
+    ],
+)
+def test_names_units_and_rules_above_a_table(tmp_path, names, form):
+    profile, _ = mf.read_profile(written(tmp_path, "road.txt", names + lines(form)))
+    assert profile.stations.tolist() == STATIONS
+    assert profile.elevation == pytest.approx(1e-3 * np.array(HEIGHTS), rel=1e-15)
+
+
+@pytest.mark.parametrize("above", ["600,0.05\n", "12.5,80\n2024,5\n", "Lane 1\n600,2\n"])
+def test_numbers_above_the_names_need_to_be_left_out(tmp_path, above):
+    file = written(tmp_path, "road.csv", above + "distance [m],elevation [mm]\n" + lines("{x},{z}"))
+    with pytest.raises(ValueError, match=r"line [23]: expected numbers .*--skip-lines\) leaves out lines above"):
+        mf.read_profile(file)
+    profile, _ = mf.read_profile(file, skip_lines=above.count("\n"))
+    assert profile.elevation == pytest.approx(1e-3 * np.array(HEIGHTS), rel=1e-15)
+
+
+def test_a_second_table_below_the_first_is_not_joined(tmp_path):
+    with pytest.raises(
+        ValueError, match=r"line 27: expected numbers .*a second table would need a file of its own"
+    ):
+        mf.read_profile(written(tmp_path, "road.csv", ("x,z\n" + many("{x},{z}", count=20)) * 2))
+
+
+@pytest.mark.parametrize(
+    ("text", "columns"),
+    [
+        ("event,x,z\n" + lines("{n},{x},{z}").replace("3,1.5", "bridge,1.5"), None),
+        ("x,z,status\n" + lines("{x},{z},{n}").replace(",2\n", ",OK\n"), None),
+        ("time,x,z\n" + lines("{n},{x},{z}").replace("2,1.0", "12:30,1.0"), None),
+        ("x,z,other\n" + lines("{x},{z},{n}").replace(",2\n", ",bad\n"), ["x", "z"]),
+        ("x,z,other\n" + lines("{x},{z},{n}").replace(",2\n", ",bad\n"), [0, 1]),
+    ],
+)
+def test_a_text_in_a_column_that_is_not_taken(tmp_path, text, columns):
+    profile, _ = mf.read_profile(written(tmp_path, "road.csv", text), columns=columns)
+    assert profile.stations.tolist() == STATIONS
+    assert profile.elevation.tolist() == HEIGHTS
+    if columns:
+        with pytest.raises(ValueError, match=r"line 4: expected numbers separated by commas, got '1,.*bad'"):
+            mf.read_profile(tmp_path / "road.csv", columns=["x", "z", "other"])
+
+
+@pytest.mark.parametrize(
+    "remark", ['"joint at\n12.5 m"', '"a, b\nline 2"', '"two\r\n\r\nlines"', '"km 3\n4"', '"1\n2, 3 m"']
+)
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_line_ends_within_quotation_marks(tmp_path, remark, separator):
+    """RFC 4180: they belong to the field."""
+    for some in (lines("{x}|{z}|#"), lines("{x}|{z}|#").replace("#\n", "\n", 2).replace("#\n", '"a"\n', 1)):
+        text = ("x|z|remark\n" + some).replace("|", separator).replace("#", remark)
+        profile, _ = mf.read_profile(written(tmp_path, "road.csv", text))
+        assert profile.stations.tolist() == STATIONS
+        assert profile.elevation.tolist() == HEIGHTS
+
+
+def test_a_column_whose_name_has_a_comma(tmp_path, capsys):
+    file = written(tmp_path, "road.csv", '"Distance, m","Elevation, mm",b\n' + lines("{x},{z},1"))
+    for columns in (["Distance, m", "Elevation, mm"], ["Distance", "Elevation"]):
+        assert mf.read_profile(file, columns=columns).profile.elevation[3] == pytest.approx(0.004)
+    assert main(["profile", str(file), "--columns", '"Distance, m", "Elevation, mm"']) == 0
+    assert "without" not in capsys.readouterr().out
+
+
 def test_lines_to_skip_where_it_is_not_plain(tmp_path, capsys):
     text = "Road,A12\nInterval,0.25\na,b\n" + lines("{x},{z}")
     file = written(tmp_path, "road.csv", text)
@@ -270,7 +344,22 @@ def test_lines_to_skip_where_it_is_not_plain(tmp_path, capsys):
 
 @pytest.mark.parametrize(
     "below",
-    ["Total,45.6\n", "\nEnd of data\n", ",\n,\n", "Mittelwert,0.9\nMaximum,4\n", "----\nEnd of file, 5 rows\n\x1a"],
+    [
+        *(
+            "Average: 0.0\n",
+            "Ende der Messung: 12.05.2024\n",
+            "(5 rows affected)\n",
+            "5 rows exported on 2024-05-01\n",
+        ),
+        *(
+            "Total,45.6\n",
+            "\nEnd of data\n",
+            ",\n,\n",
+            "Mittelwert,0.9\nMaximum,4\n",
+            "----\nEnd of file, 5 rows\n\x1a",
+        ),
+        ",\n" * 40_000,
+    ],
 )
 def test_what_stands_below_a_table(tmp_path, below):
     profile, understood = mf.read_profile(written(tmp_path, "road.csv", "x,z\n" + lines("{x},{z}") + below))
@@ -278,7 +367,9 @@ def test_what_stands_below_a_table(tmp_path, below):
     assert re.search(r"(lines?, )?'.*' (… )?below left out", understood)
 
 
-@pytest.mark.parametrize("below", ["2.5,x\n", "o.5,3\n", "x,3\n", "2.5\n", "Total,1\n2.5,3\n", ",3\n"])
+@pytest.mark.parametrize(
+    "below", ["2.5,x\n", "o.5,3\n", "x,3\n", "2.5\n", "2.5 mm\n", "2.5;3\n", "Total,1\n2.5,3\n", ",3\n"]
+)
 def test_a_damaged_row_is_no_trailing_line(tmp_path, below):
     with pytest.raises(ValueError, match=r"line [67]: (expected|there is no station)"):
         mf.read_profile(written(tmp_path, "road.csv", lines("{x},{z}") + below))
@@ -322,6 +413,13 @@ def test_stationing_in_kilometres_and_metres(tmp_path):
     feet = "Station (ft),z\n12+50,1\n12+75,2\n13+00,1\n13+25,2\n"
     found = mf.read_profile(written(tmp_path, "b.csv", feet)).profile.stations
     assert found == pytest.approx(0.3048 * np.array([1250, 1275, 1300, 1325]), rel=1e-15)
+
+
+def test_thousands_are_named_only_where_they_are_the_matter(tmp_path):
+    for row in ("7.620,0.1x2", "22.936,1.x15", "1.715,OK"):
+        text = "x,z\n" + lines("{x},{z}") + f"{row}\n" + lines("{n}3,{z}")
+        with pytest.raises(ValueError, match=r"line 7: expected numbers separated by commas, got '[^']*'$"):
+            mf.read_profile(written(tmp_path, "road.csv", text))
 
 
 @pytest.mark.parametrize("row", ["0;1.234,5", "1 000,5;1,5", "0;1'234.5"])
@@ -381,16 +479,6 @@ def test_the_fast_way_is_the_slow_one(text):
     assert fast > 4
 
 
-def test_numbers_alone_are_read_from_the_same_texts(tmp_path):
-    text = "Force history\n# made by hand\ntime [s];force [N]\n" + lines("{x};{z}D+03 // joint")
-    assert (
-        read_numbers(written(tmp_path, "f.txt", text)).tolist()
-        == np.transpose([STATIONS, 1e3 * np.array(HEIGHTS)]).tolist()
-    )
-    with pytest.raises(ValueError, match="column 'c' holds no numbers"):
-        read_numbers(written(tmp_path, "f.txt", "a,b,c\n" + lines("{x},{z},joint")))
-
-
 # Spreadsheets.
 
 ROWS = [["distance [m]", "elevation [mm]", "remark"], *([x, z, ""] for x, z in zip(STATIONS, HEIGHTS, strict=True))]
@@ -444,8 +532,33 @@ def test_a_fault_in_a_sheet_is_told_by_its_row(tmp_path, calamine):
     with pytest.raises(ValueError, match=r"sheet 'A', row 5: expected numbers, got '1.75 \| x"):
         mf.read_profile(xlsx(tmp_path / "road.xlsx", {"A": rows}))
     gap = [*ROWS[:3], [0.75, "", ""], *ROWS[3:]]
-    with pytest.raises(ValueError, match=r"row 4: no elevation at 0.75 m"):
+    with pytest.raises(ValueError, match=r"sheet 'A', row 4: no elevation at 0.75 m"):
         mf.read_profile(xlsx(tmp_path / "road.xlsx", {"A": gap}))
+
+
+def test_cells_beside_the_table_of_a_sheet(tmp_path, calamine):
+    beside = [["Mean", 0.002], ["IRI", 3.06], *[["", ""]] * 30]
+    names = ["distance [m]", "elevation [mm]"]
+    table = [names, *([0.5 * n, n % 3] for n in range(31))]
+    rows = [[*row, "", *cells] for row, cells in zip(table, beside, strict=True)]
+    profile, understood = mf.read_profile(xlsx(tmp_path / "road.xlsx", {"A": rows}))
+    assert profile.elevation == pytest.approx(1e-3 * (np.arange(31) % 3))
+    assert "without the cells beside the table" in understood
+    # Another table is no such thing, however short it is, and whichever of the two is damaged.
+    rows = [[*row, "", *(row if n < 6 else ("", ""))] for n, row in enumerate(table)]
+    with pytest.raises(ValueError, match=r"road\.xlsx: "):
+        mf.read_profile(xlsx(tmp_path / "road.xlsx", {"A": rows}))
+    for column in (1, 4):
+        rows = [[*row, "", *row] for row in table]
+        rows[20][column] = "x"
+        with pytest.raises(ValueError, match="sheet 'A', "):
+            mf.read_profile(xlsx(tmp_path / "road.xlsx", {"A": rows}))
+
+
+def test_options_keep_their_names_in_messages_about_sheets(tmp_path, calamine):
+    rows = [["distance [m]", "remark"], *([n, n] for n in range(5))]
+    with pytest.raises(ValueError, match=r"\(on the command line --columns\)"):
+        mf.read_profile(xlsx(tmp_path / "road.xlsx", {"A": rows}))
 
 
 def test_damaged_spreadsheets_are_refused(tmp_path, calamine):

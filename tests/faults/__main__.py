@@ -48,6 +48,7 @@ PROFILES = [
     "tests/test_gaps.py",
     "tests/test_tables.py",
     "tests/test_preparation.py",
+    "tests/test_classic_files.py",
     "tests/test_roles.py",
     "tests/test_recordings.py",
     "tests/test_choice.py",
@@ -84,6 +85,7 @@ REPORTS = [
 WRITTEN = ["tests/test_disks.py", "tests/test_interrupts.py"]
 # These where it lies in what a user writes.
 SCENARIOS = [
+    "tests/test_force_files.py",
     "tests/test_scenario.py",
     "tests/test_schema.py",
     "tests/test_sampled_files.py",

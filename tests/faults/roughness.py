@@ -331,10 +331,35 @@ FAULTS = [
     ),
     Fault("gaps filled unasked", "roughness/gaps.py", "if longest is None:", "if False:"),
     Fault("holes between stations unseen", "roughness/gaps.py", "if not holes.size:", "if True:"),
-    Fault("long gaps filled in pieces", "roughness/gaps.py", "and gap.length <= longest]", "]"),
+    Fault("long gaps filled in pieces", "roughness/gaps.py", "and gap.length <= longest * (1 + SLACK)]", "]"),
     Fault("markers left in", "roughness/formats/base.py", "for marker in missing:", "for marker in ():"),
     Fault("turned round in place", "roughness/files.py", "elevations=raw.elevations[::-1],", ""),
-    Fault("gaps of any length filled", "roughness/gaps.py", "if most.length > longest:", "if False:"),
+    Fault("gaps of any length filled", "roughness/gaps.py", "> longest * (1 + SLACK):\n", "> np.inf:\n"),
+    Fault(
+        "rows in quotation marks",
+        "roughness/formats/fields.py",
+        'return kinds.count("n") > 1 or (',
+        "return (False and ",
+    ),
+    Fault(
+        "a text among elevations", "roughness/formats/columns.py", "found.require(taken.used)", "found.require(())"
+    ),
+    Fault(
+        "a text in an ERD file",
+        "roughness/formats/fields.py",
+        "found.require(range(table.width))",
+        "found.require(())",
+    ),
+    Fault("millinewton for meganewton", "roughness/formats/roles.py", '"MN": 1e6', '"MN": 1e-3'),
+    Fault(
+        "the first column for the time",
+        "scenarios/force_files.py",
+        "if called := [",
+        "if False and [",
+    ),
+    Fault("markers among forces", "scenarios/force_files.py", "(marker.value < 0 or", "(False and"),
+    Fault("another table beside", "roughness/formats/sheets.py", "few = 0.25", "few = 2.0"),
+    Fault("netCDF 3 not scaled", "roughness/formats/classic.py", "found * scale[0]", "found"),
     Fault("high pass of first order", "roughness/steps/base.py", "order=FILTER.gentle", "order=1"),
     Fault(
         "resampled with aliases",

@@ -54,6 +54,17 @@ def plain(value: float) -> str:
     return f"{value:.10g}".replace("-", "−")
 
 
+def place(along: float) -> str:
+    """Write a place along a road, or across it, to a tenth of a millimetre.
+
+    Examples
+    --------
+    >>> place(523425.2400000001), place(10 / 3), place(-0.0), place(12000.0)
+    ('523425.24', '3.3333', '0', '12000')
+    """
+    return np.format_float_positional(round(along, 4) + 0.0, trim="-")
+
+
 def in_both_units(speed: float, *, in_kmh: bool = False) -> tuple[str, str]:
     """Write a speed in m/s and in km/h, as it was given first and the other as one writes it.
 
@@ -107,7 +118,7 @@ def told_apart(*values: float, digits: int = 6) -> tuple[str, ...]:
 
 def _positional(value: float, digits: int) -> str:
     """Write so many digits of a number, powers of ten only where nobody would write it in full."""
-    text = f"{value:.{digits}g}"
+    text = f"{value + 0.0:.{digits}g}"  # no sign of zero
     in_full = "e" in text and 1e-4 <= abs(value) < 1e15
     return np.format_float_positional(float(text), trim="-") if in_full else text
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import inspect
 import json
 from collections.abc import Callable, Sequence
@@ -28,8 +29,8 @@ class Typed(NamedTuple):
 
 
 def _words(option: str, typed: str) -> list[str]:
-    """Split a list with commas."""
-    return [word.strip() for word in typed.split(",") if word.strip()]
+    """Split a list with commas; a word that has one itself stands in quotation marks."""
+    return [word.strip() for word in next(csv.reader([typed], skipinitialspace=True), []) if word.strip()]
 
 
 def _columns(option: str, typed: str) -> list[str | int] | None:

@@ -15,7 +15,7 @@ from movingfrf._basics.checks import checking, option
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.values import Value, brief
 from movingfrf._basics.welch import Spectra
-from movingfrf._basics.wording import evenly_spread, named_paths, plain, told_apart
+from movingfrf._basics.wording import evenly_spread, named_paths, place, plain, told_apart
 from movingfrf.metrics.iri import PROCEDURE, coarse_for_index, index_between, shortest_segment, straight_index
 from movingfrf.metrics.spectra import path_spectra
 from movingfrf.roughness.fitting import SMOOTHING_EDGES, IsoFit, fit_iso
@@ -488,7 +488,8 @@ def _oddities(stations: FloatArray, elevation: FloatArray, of: str) -> list[str]
     high = np.flatnonzero(peak & (bend > max(ODDITIES.spike, ODDITIES.unusual * float(np.median(bend)))))
     if high.size:
         worst = int(high[bend[high].argmax()])
-        by = f"by {1e3 * bend[worst]:.3g} mm at {stations[worst + 1]:g} m: a spike, or a sharp edge of the road."
+        where = place(stations[worst + 1])
+        by = f"by {1e3 * bend[worst]:.3g} mm at {where} m: a spike, or a sharp edge of the road."
         one = f"1 elevation{of} stands out from both of its neighbours, "
         several = f"{high.size} elevations{of} stand out from both of their neighbours, the most "
         found.append((one if high.size == 1 else several) + by)
@@ -498,7 +499,7 @@ def _oddities(stations: FloatArray, elevation: FloatArray, of: str) -> list[str]
     level = np.flatnonzero((np.diff(bounds) > ODDITIES.level_stations) & (lengths >= ODDITIES.level))
     if level.size:
         longest = level[np.sort(np.argsort(-lengths[level], kind="stable")[: ODDITIES.most_stretches])]
-        places = [f"over {lengths[n]:.4g} m from {stations[bounds[n]]:g} m on" for n in longest]
+        places = [f"over {lengths[n]:.4g} m from {place(stations[bounds[n]])} m on" for n in longest]
         more = f", and in {level.size - len(places)} shorter stretches" if level.size > len(places) else ""
         found.append(
             f"The elevation{of} does not change at all {', '.join(places)}{more}: a drop-out that was filled, or a "

@@ -13,7 +13,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import ParameterError, checking, option, shown, spelt
 from movingfrf._basics.output import Content, behind_links, naming, replacing
 from movingfrf._basics.values import as_table, in_lines
-from movingfrf._basics.wording import count, told_apart
+from movingfrf._basics.wording import count, place, told_apart
 from movingfrf.roughness.formats import columns as text
 from movingfrf.roughness.formats import crg, erd, gpx, matlab, netcdf, numpy_file, sheets
 from movingfrf.roughness.formats.base import ColumnKey, Format, RawProfile, Wanted
@@ -507,7 +507,7 @@ def _sentence(name: str, profile: Profile, raw: RawProfile) -> str:
     step = profile.even_step()
     steps = np.diff(stations)
     spacing = f"{step:.4g}" if step is not None else "–".join(told_apart(steps.min(), steps.max(), digits=4))
-    first, last = told_apart(stations[0], stations[-1])
+    first, last = place(stations[0]), place(stations[-1])
     return (
         f"{name}: {stations.size} stations from {first} m to {last} m every {spacing} m, "
         f"{count(profile.paths, 'path')}, elevation {elevation.min():g} to {elevation.max():g} m, {raw.understood}"

@@ -8,8 +8,9 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import option
-from movingfrf._basics.wording import count, told_apart
+from movingfrf._basics.wording import count, place, told_apart
 from movingfrf.roughness.formats.base import RawProfile
+from movingfrf.roughness.profile import SLACK
 from movingfrf.roughness.sentinels import STANDING
 
 
@@ -53,7 +54,8 @@ def completed(raw: RawProfile, longest: float | None) -> RawProfile:
             f"{option('repair_gaps')} fills gaps up to a length, {option('crop_rims')} leaves out the rims of a "
             f"grid, and `movingfrf profile --keep-gaps` (`read_pieces` in Python) describes what is there"
         )
-    if most.length > longest:
+    # As it is told, so that what the message names is enough.
+    if float(f"{most.length:.4g}") > longest * (1 + SLACK):
         long, allowed = told_apart(most.length, longest, digits=4)
         raise ValueError(
             f"{raw.place(most.first)}: the gap {_at(raw, most)} is "
@@ -85,7 +87,7 @@ def whole_pieces(raw: RawProfile, longest: float | None) -> list[RawProfile]:
     """
     raw = with_all_stations(raw)
     gaps = gaps_of(raw)
-    short = [gap for gap in gaps if longest is not None and gap.length <= longest]
+    short = [gap for gap in gaps if longest is not None and gap.length <= longest * (1 + SLACK)]
     raw = _filled(raw, short) if short else raw
     left = [gap for gap in gaps if gap not in short]
     if not left:
@@ -101,11 +103,11 @@ def whole_pieces(raw: RawProfile, longest: float | None) -> list[RawProfile]:
 
 def part(raw: RawProfile, first: int, last: int) -> RawProfile:
     """Take the stations from one number to another, which is not among them."""
-    place = raw.place
+    before = raw.place
     return raw._replace(
         stations=raw.stations[first:last],
         elevations=raw.elevations[first:last],
-        place=lambda row: place(row + first),
+        place=lambda row: before(row + first),
     )
 
 
@@ -141,11 +143,11 @@ def with_all_stations(raw: RawProfile) -> RawProfile:
     put = [raw.stations[n] + steps[n] * np.arange(1, k + 1) / (k + 1) for n, k in zip(holes, lacking, strict=True)]
     behind = np.repeat(holes + 1, lacking)
     rows = np.insert(np.arange(raw.stations.size), behind, behind)
-    place = raw.place
+    before = raw.place
     return raw._replace(
         stations=np.insert(raw.stations, behind, np.concatenate(put)),
         elevations=np.insert(raw.elevations, behind, np.nan, axis=0),
-        place=lambda row: place(int(rows[row])),
+        place=lambda row: before(int(rows[row])),
     )
 
 
@@ -205,7 +207,7 @@ def _long(gap: Gap) -> str:
 
 def _at(raw: RawProfile, gap: Gap) -> str:
     """Say where a gap begins, and on which path."""
-    station = f"at {raw.stations[gap.first]:g} m"
+    station = f"at {place(raw.stations[gap.first])} m"
     if raw.across is not None:
-        return f"{station}, {raw.across[gap.path]:g} m across"
+        return f"{station}, {place(raw.across[gap.path])} m across"
     return station if raw.elevations.shape[1] == 1 else f"{station} on path {gap.path}"

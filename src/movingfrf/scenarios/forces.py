@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import checking, shown
+from movingfrf._basics.checks import ParameterError, checking, shown
 from movingfrf._basics.smooth import smooth_step
 from movingfrf._basics.spline import cubic
 from movingfrf._basics.values import Value
@@ -288,17 +288,21 @@ def random_sum(
     )
 
 
-def tabulated(*, file: Path, column: int = 1) -> History:
-    """Read a force from a file of columns: time [s], then one force per column [N].
+def tabulated(*, file: Path, column: int | None = None, skip_lines: int = 0) -> History:
+    """Read a force from a file of columns: a time and one force or more, by names and units, [s] and [N] without.
 
     Between the rows the force is a cubic spline; before the first and after the last row it is zero.
 
     Parameters
     ----------
     file : Path
-        The file: columns separated by commas, semicolons, tabs or spaces.
-    column : int
-        Number of the force's column; the time is column 0.
+        The file: columns separated by commas, semicolons, tabs or spaces; times in s, ms, min or h, forces in N,
+        kN, MN, lbf or kip, where names or a line below them say so.
+    column : int, optional
+        Number of the force's column, counted from 0; None: the first that name or unit calls a force, or else the
+        first that is no time. What stands in other columns does not matter.
+    skip_lines : int
+        Number of lines at the beginning to leave out, where it is not plain where the table begins.
 
     Returns
     -------
@@ -310,18 +314,19 @@ def tabulated(*, file: Path, column: int = 1) -> History:
     ValueError
         If the file cannot be read, or lacks the column.
     """
-    from movingfrf.roughness.formats.columns import read_numbers
+    from movingfrf.scenarios.force_files import read_force
 
-    table = read_numbers(file)
-    time, forces = table[:, 0], table[:, 1:]
     with checking() as check:
-        if len(time) < 4 or (np.diff(time) <= 0).any():
-            check.refuse("file", f"must hold at least 4 rows of increasing time [s], {file} does not")
-        column = check.whole("column", column, least=1)
-        if not check.faults and column > forces.shape[1]:
-            check.refuse("column", f"must be at most {forces.shape[1]}, the columns of {file}, got {column}")
+        column = column if column is None else check.whole("column", column, least=0)
+        skip_lines = check.whole("skip_lines", skip_lines, least=0)
+    try:
+        time, force = read_force(file, column, skip_lines)
+    except ParameterError:
+        raise
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
     return History(
-        smooth=cubic(time, forces[:, column - 1]),
+        smooth=cubic(time, force),
         begins=float(time[0]),
         ends=float(np.nextafter(time[-1], np.inf)),  # the last row counts
         finest=float(np.diff(time).min()),

@@ -149,7 +149,7 @@ def chosen_columns(names: Sequence[str], columns: Sequence[ColumnKey]) -> list[i
     names : sequence of str
         Names that the file has.
     columns : sequence of str or int
-        Names, with or without the unit in brackets, or numbers counted from 0.
+        Names, with or without the unit in brackets or behind a comma, or numbers counted from 0.
 
     Returns
     -------
@@ -161,7 +161,7 @@ def chosen_columns(names: Sequence[str], columns: Sequence[ColumnKey]) -> list[i
     ValueError
         If there is no such column, with those that there are.
     """
-    bare = [re.sub(r"[\[(].*", "", name).strip().lower() for name in names]
+    bare = [re.sub(r"[\[(,].*", "", name).strip().lower() for name in names]
     found = []
     for column in columns:
         if isinstance(column, str) and column in names:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
@@ -24,9 +24,9 @@ from movingfrf.roughness.formats.base import (
     scaled,
     units_taken,
 )
-from movingfrf.roughness.formats.fields import Line, Table, as_text, find_table, line_of, numbers
+from movingfrf.roughness.formats.fields import Line, Numbers, Table, as_text, find_table, line_of, numbers
 from movingfrf.roughness.formats.heads import Columns, columns_of
-from movingfrf.roughness.formats.roles import Role, counts, kind_of_unit, scales_of, sort_out
+from movingfrf.roughness.formats.roles import Head, Role, counts, kind_of_unit, scales_of, sort_out
 from movingfrf.roughness.profile import Profile
 
 
@@ -67,12 +67,13 @@ def table(data: bytes, wanted: Wanted) -> RawProfile:
     data, encoding = as_text(data)
     data = _below(data, wanted.skip_lines)
     rows, head = _laid_out(data, encoding)
-    found = numbers(data, encoding, rows)
+    found = numbers(data, encoding, rows, all_wanted=False)
     there = [bool(np.isfinite(column).any()) for column in found.values.T]
     if wanted.columns is not None:
         taken = _asked_for(head, wanted.columns, found.texts)
     else:
         taken = _taken(head, found.values, found.texts, there)
+    found.require(taken.used)
     if wanted.units is not None:
         taken = taken._replace(timed=kind_of_unit(wanted.units[0]) == "time")
     stated = units_taken([head.units[n] for n in taken.used], wanted.units)
@@ -96,36 +97,44 @@ def table(data: bytes, wanted: Wanted) -> RawProfile:
     )
 
 
-def read_numbers(file: str | Path) -> FloatArray:
-    """Read a file of columns as it stands, whatever its numbers mean.
+class TextTable(NamedTuple):
+    """Columns of a text as they stand, whatever they hold."""
+
+    names: list[str]  # numbers where there are no names
+    heads: list[Head]  # what names and units say
+    named: bool  # whether there are names
+    found: Numbers
+    place: Callable[[int], str]  # where a row stands
+
+
+def read_table(file: str | Path, skip_lines: int = 0) -> TextTable:
+    """Read a file of columns as it stands.
 
     Parameters
     ----------
     file : str or Path
         Text in columns, with or without names.
+    skip_lines : int
+        Lines at the beginning that are no part of the table.
 
     Returns
     -------
-    ndarray, shape (row, column)
-        All of its numbers.
+    TextTable
+        All of it.
 
     Raises
     ------
     ValueError
-        If it is no such file, or a field is empty or text; with the line.
+        If it is no such file; with the line.
     """
-    try:
-        data, encoding = as_text(bytes_of(Path(file)))
-        rows, head = _laid_out(data, encoding)
-        values, texts = numbers(data, encoding, rows)
-        if texts:
-            raise ValueError(f"column {head.names[min(texts)]!r} holds no numbers")
-        bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
-        if bad.size:
-            raise ValueError(f"line {line_of(data, encoding, rows, int(bad[0]))}: expected finite numbers only")
-    except ValueError as error:
-        raise ValueError(f"{file}: {error}") from None
-    return values
+    data, encoding = as_text(bytes_of(Path(file)))
+    data = _below(data, skip_lines)
+    rows, head = _laid_out(data, encoding)
+
+    def place(row: int) -> str:
+        return f"line {line_of(data, encoding, rows, row)}"
+
+    return TextTable(head.names, head.heads, head.lines > 0, numbers(data, encoding, rows, all_wanted=False), place)
 
 
 def made(profile: Profile, encoding: str = "") -> dict[str, Content]:

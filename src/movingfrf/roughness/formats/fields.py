@@ -7,7 +7,7 @@ import io
 import re
 import warnings
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import NamedTuple
@@ -27,6 +27,7 @@ class Writing:
         (";", "semicolons"),
         ("\t", "tabs"),
         (",", "commas"),
+        ("|", "vertical bars"),
         (None, "spaces"),
     )
     # Fortran writes D for E, and leaves it out before an exponent of three digits.
@@ -45,6 +46,7 @@ class Writing:
     markers: tuple[str, ...] = ("-", "--", "---", "?", "*", "**", "***", ".", "null", "NIL", "na", "N.A.", "n.a.")
     # Whole words: a fault of one letter in a number is none.
     footer: re.Pattern[str] = re.compile(r"[^\W\d_]{2,}[^\d]*")
+    word: re.Pattern[str] = re.compile(r"\(?[^\W\d_]{2,}[.,:;)]*")
     ruled: re.Pattern[str] = re.compile(r"[-=_*]{2,}")
     thousands: re.Pattern[str] = re.compile(r"[+-]?\d{1,3}([.,' ])\d{3}(\1\d{3})*([.,]\d+)?")
     # Signs that begin a comment, wherever they stand or behind a blank or a separator; not within quotation marks.
@@ -102,6 +104,12 @@ class Numbers(NamedTuple):
 
     values: FloatArray  # (row, column), nan where there is no number
     texts: frozenset[int]  # columns that hold no numbers
+    faults: Mapping[int, Line] = {}  # of the other columns that hold a text somewhere: where, and what to say of it
+
+    def require(self, columns: Iterable[int]) -> None:
+        """Refuse a text among the numbers of some columns."""
+        if faults := [self.faults[n] for n in columns if n in self.faults]:
+            raise ValueError(f"line {min(faults).number}: {min(faults).text}")
 
 
 def as_text(data: bytes) -> tuple[bytes, str]:
@@ -247,20 +255,20 @@ def find_table(data: bytes, encoding: str) -> Table:
             return _table(data, encoding, shown, n, most)
     plain = [line for line in shown if bare(line.text, None).strip()]
     if not plain:
-        raise ValueError("is empty: a profile needs at least four lines of station and elevation")
+        raise ValueError("is empty: there must be at least four lines of numbers")
     for line in plain[:4]:
         if any(is_number(word) for word in re.split(r"[;,\s]+", line.text) if word):
             raise ValueError(
-                f"line {line.number}: expected a station and at least one elevation, all numbers, got "
-                f"{line.text[:60]!r}{grouped(line.text.split(';'))}"
+                f"line {line.number}: expected two numbers or more, got "
+                f"{line.text[:60]!r}{grouped([field for field in line.text.split(';') if not is_number(field)])}"
             )
     raise ValueError(
-        f"no numbers in the first {len(plain)} lines: expected a station and at least one elevation in each"
+        f"no numbers in the first {len(plain)} lines: expected two or more in each"
         + (f"; {option('skip_lines')} leaves out more above the table" if len(shown) == WRITING.looked_at else "")
     )
 
 
-def numbers(data: bytes, encoding: str, table: Table) -> Numbers:
+def numbers(data: bytes, encoding: str, table: Table, *, all_wanted: bool = True) -> Numbers:
     """Read the rows of a table whose place is known.
 
     Parameters
@@ -271,6 +279,8 @@ def numbers(data: bytes, encoding: str, table: Table) -> Numbers:
         Its encoding.
     table : Table
         Where and how the rows stand.
+    all_wanted : bool
+        Whether a text among the numbers of any column is refused, or told as that column's fault.
 
     Returns
     -------
@@ -284,7 +294,10 @@ def numbers(data: bytes, encoding: str, table: Table) -> Numbers:
     """
     # What the C parser does not read as it stands is read line by line: slow, but it says what is wrong.
     values = _fast(data, encoding, table)
-    return _line_by_line(data, encoding, table) if values is None else Numbers(values, table.texts)
+    found = _line_by_line(data, encoding, table) if values is None else Numbers(values, table.texts)
+    if all_wanted:
+        found.require(range(table.width))
+    return found
 
 
 def line_of(data: bytes, encoding: str, table: Table, row: int) -> int:
@@ -349,10 +362,13 @@ def _table(data: bytes, encoding: str, shown: Sequence[Line], at: int, separator
 
 def _ended(data: bytes, encoding: str, table: Table) -> Table:
     """Find what stands below the rows: lines that begin with a word, or hold nothing."""
-    begin = max(len(data) - WRITING.tail, _offset(data, table.first))
-    tail = data[begin:].splitlines(keepends=True)
-    end, below = len(data), list[Line]()
-    place = len(data)
+    # Empty cells below may be as many as a spreadsheet has rows.
+    full = len(data.rstrip(b" \t,;|\r\n"))
+    empty = data[full:].partition(b"\n")[2]
+    below = [Line(0, row) for row in empty.decode().splitlines() if row.strip()][::-1]
+    end = place = len(data) - len(empty) if below else len(data)
+    begin = max(place - WRITING.tail, _offset(data, table.first))
+    tail = data[begin:place].splitlines(keepends=True)
     for raw in reversed(tail[1:]):
         place -= len(raw)
         text = raw.decode(encoding, "replace").rstrip("\r\n")
@@ -360,10 +376,10 @@ def _ended(data: bytes, encoding: str, table: Table) -> Table:
             break
         fields = table.fields(text)
         if not any(fields):
-            if set(text) & {";", ",", "\t"}:  # a row of empty cells
+            if text.strip():  # a row of empty cells
                 below.append(Line(0, text))
                 end = place
-        elif _is_footer(fields):
+        elif _is_footer(fields, text, table):
             below.append(Line(0, text))
             end = place
         else:
@@ -371,12 +387,17 @@ def _ended(data: bytes, encoding: str, table: Table) -> Table:
     return table._replace(below=below[::-1], end=end) if below else table
 
 
-def _is_footer(fields: Sequence[str]) -> bool:
-    """Whether a line below a table begins with a word where rows have a number."""
+def _is_footer(fields: Sequence[str], text: str, table: Table) -> bool:
+    """Whether a line below a table begins with a word where rows have a number, or is a sentence."""
     if all(map(WRITING.ruled.fullmatch, fields)):
         return True
     words = [field for field in fields if field and not is_missing(field)]
-    return not is_number(fields[0]) and bool(words) and WRITING.footer.fullmatch(words[0]) is not None
+    if not is_number(fields[0]) and words and WRITING.footer.fullmatch(words[0]):
+        return True
+    # A row that is cut short holds no words, unless some of its columns do.
+    said = [WRITING.word.fullmatch(word) is not None for word in text.split() if not is_missing(word)]
+    sentence = len(fields) != table.width and sum(said) > 1 and not table.texts
+    return sentence or (len(fields) == 1 and said[:1] == [True])
 
 
 def _fast(data: bytes, encoding: str, table: Table) -> FloatArray | None:
@@ -448,9 +469,9 @@ def _whole(data: bytes, encoding: str, table: Table, rows: IntArray) -> bool:
 
 
 def _line_by_line(data: bytes, encoding: str, table: Table) -> Numbers:
-    """Read rows one by one; a column of more texts than numbers holds none, any other text is a fault."""
+    """Read rows one by one; a column of more texts than numbers holds none, other texts are its fault."""
     values = array("d")
-    texts: dict[int, list[Line]] = {n: [] for n in range(table.width)}
+    texts: dict[int, Line] = {}
     there = [0] * table.width
     fault = None
     for line in _rows(data, encoding, table):
@@ -458,33 +479,44 @@ def _line_by_line(data: bytes, encoding: str, table: Table) -> Numbers:
         if len(fields) != table.width:
             fault = Line(line.number, f"expected {table.width} columns as before, got {len(fields)}")
             break
-        if any(is_number(word) for field in fields for word in re.split(r"[;,\s]+", field.partition("\n")[2])):
+        if any(_is_row(part, table) for field in fields for part in field.split("\n")[1:]):
             fault = Line(line.number, f"a quotation mark is not closed in its line, got {line.text[:60]!r}")
             break
         for n, field in enumerate(fields):
             value = number_in(field, table.decimal)
             if value is None:
-                texts[n] = [*texts[n], line] if not texts[n] else texts[n]
+                texts.setdefault(n, line)
                 there[n] -= 1
                 value = float("nan")
             elif value == value:
                 there[n] += 1
             values.append(value)
-    left = frozenset(n for n, found in texts.items() if found and (there[n] < 0 or n in table.texts))
-    wrong = [found[0] for n, found in texts.items() if found and n not in left]
-    faults = [Line(line.number, _unreadable(line, table)) for line in wrong] + ([fault] if fault else [])
-    if faults:
-        first = min(faults)
+    left = frozenset(n for n in texts if there[n] < 0 or n in table.texts)
+    faults = {n: Line(line.number, _unreadable(line, table)) for n, line in texts.items() if n not in left}
+    if fault:
+        first = min([*faults.values(), fault])
         raise ValueError(f"line {first.number}: {first.text}")
-    return Numbers(np.array(values).reshape(-1, table.width), left)
+    return Numbers(np.array(values).reshape(-1, table.width), left, faults)
+
+
+def _is_row(text: str, table: Table) -> bool:
+    """Whether a line within quotation marks looks like a row that they swallowed."""
+    kinds = _kinds(split(text, table.separator))
+    return kinds.count("n") > 1 or (len(kinds) == table.width and "n" in kinds)
 
 
 def _unreadable(line: Line, table: Table) -> str:
-    return f"expected numbers separated by {table.said}, got {line.text[:60]!r}{grouped(table.fields(line.text))}"
+    fields = table.fields(line.text)
+    said = f"expected numbers separated by {table.said}, got {line.text[:60]!r}"
+    if not any(map(is_number, fields)):  # like names
+        above = line.number - table.first < WRITING.alike
+        skip = f"{option('skip_lines')} leaves out lines above the table"
+        return f"{said}; {skip if above else 'a second table would need a file of its own'}"
+    return said + grouped([field for field in fields if number_in(field, table.decimal) is None])
 
 
 def grouped(fields: Sequence[str]) -> str:
-    """Say that thousands are separated, where a field looks like it."""
+    """Say that thousands are separated, where one of the fields that are damaged looks like it."""
     found = any(WRITING.thousands.fullmatch(field.strip()) for field in fields)
     return "; what separates thousands cannot be told from a decimal sign" if found else ""
 

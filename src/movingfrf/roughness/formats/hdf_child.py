@@ -28,6 +28,18 @@ def text(value: Any) -> str:
     return value if isinstance(value, str) else ""
 
 
+def unit_of(item: h5py.Dataset) -> str:
+    """Read the unit, whatever its attribute is called, and whether it is a text or an array of one."""
+    found = (np.asarray(item.attrs[name]).ravel() for name in item.attrs if name.lower() in ("units", "unit"))
+    return next((text(value[0]) for value in found if value.size == 1), "")
+
+
+def columns(item: h5py.Dataset) -> dict[str, np.ndarray]:
+    """Numbers in a table, by column."""
+    rows = np.asarray(item[()])
+    return {name: rows[name].astype(float) for name in rows.dtype.names or () if rows.dtype[name].kind in "iuf"}
+
+
 def numbers_attribute(item: h5py.Dataset, attribute: str, like: np.dtype | None = None) -> np.ndarray:
     """Read an attribute of numbers, of which netCDF has one or a few; none if it is something else.
 
@@ -106,19 +118,22 @@ def extract(file: Path, folder: Path, most: float) -> None:
                 continue
             # What gives a dimension of netCDF its length holds no numbers.
             empty = text(item.attrs.get("NAME", "")).startswith("This is a netCDF dimension but not a netCDF var")
-            if kind in nothing or empty or item.dtype.kind not in "iuf":
+            if kind in nothing or empty or item.dtype.kind not in "iufV":
                 continue
-            needed = 8.0 * float(np.prod(item.shape, dtype=float))
+            needed = max(8.0, item.dtype.itemsize) * float(np.prod(item.shape, dtype=float))
             if needed > most:
                 raise ValueError(
                     f"the array {name!r} claims {needed / 2**20:.4g} MiB, far more than the file can hold: it is "
                     "damaged, or packed so tightly that it must be unpacked elsewhere first"
                 )
             most -= needed
-            made = io.BytesIO()
-            np.save(made, values(item))
-            keep(folder / f"{len(listed)}.npy", made.getbuffer())
-            listed.append({"name": name, "shape": item.shape, "unit": text(item.attrs.get("units", ""))})
+            parts = {"": values(item)} if item.dtype.kind != "V" else columns(item)
+            for part, found in parts.items():
+                made = io.BytesIO()
+                np.save(made, found)
+                keep(folder / f"{len(listed)}.npy", made.getbuffer())
+                full = f"{name}.{part}" if part else name
+                listed.append({"name": full, "shape": found.shape, "unit": "" if part else unit_of(item)})
         attributes = {name: text(opened.attrs.get(name, "")) for name in ("source", "steps")}
     content = {"arrays": listed, "attributes": attributes, "unread": unread}
     keep(folder / "index.json", json.dumps(content).encode())

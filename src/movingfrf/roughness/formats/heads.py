@@ -9,7 +9,7 @@ from typing import NamedTuple
 from movingfrf._basics.checks import option
 from movingfrf.roughness.formats.base import unit_in
 from movingfrf.roughness.formats.fields import WRITING, Line, Table, grouped, is_number, split
-from movingfrf.roughness.formats.roles import Head, head, kind_of_unit
+from movingfrf.roughness.formats.roles import VOCABULARY, Head, head, kind_of_unit
 
 
 class Columns(NamedTuple):
@@ -56,18 +56,19 @@ def columns_of(table: Table) -> Columns:
     ValueError
         If a line could be names or a damaged row, with its number.
     """
-    rows = [_row(line, table) for line in table.above]
-    units = rows.pop().fields if rows and _are_units(rows, table.width) else None
+    rows = [row for line in table.above if not all(map(WRITING.ruled.fullmatch, (row := _row(line, table)).fields))]
+    units = rows.pop().fields if rows and _are_units(rows[-1].fields, table) else None
     while rows and rows[-1].comment and not _tells(rows[-1], table.width):
         rows.pop()  # remarks
     named = rows.pop() if rows and (rows[-1].comment or len(rows[-1].fields) > 1) else None
     above = [row for row in rows if not row.comment]
     plain = named is not None and _tells(named, table.width)
     # A row that is damaged may look like a name, and two lines of names may be a title and names, or a damaged row.
+    damaged = [field for field in named.fields if not is_number(field)] if named else []
     if named and (any(map(is_number, named.fields)) or (not plain and any(len(row.fields) > 1 for row in above))):
         raise ValueError(
             f"line {named.line.number}: expected numbers separated by {table.said}, got {named.line.text[:60]!r}"
-            f"{grouped(named.fields)}; {option('skip_lines')} leaves out lines above the table"
+            f"{grouped(damaged)}; {option('skip_lines')} leaves out lines above the table"
         )
     if named and len(named.fields) < table.width:
         raise ValueError(
@@ -119,19 +120,21 @@ def _between_spaces(text: str) -> list[str]:
 
 
 def _tells(row: _Row, count: int) -> bool:
-    """Whether it is plain that a line holds names: enough, no numbers, one of a station or a unit for each."""
+    """Whether it is plain that a line holds names: enough, no numbers, a station, a time or a unit for each."""
     enough = len(row.fields) == count if row.comment else len(row.fields) >= count
     return enough and not any(map(is_number, row.fields)) and _station_in(row.fields)
 
 
 def _station_in(names: Sequence[str]) -> bool:
     units = [unit_in(name) or "" for name in names]
-    return any(head(name).role == "station" for name in names) or all(
+    return any(head(name).role in ("station", "time") for name in names) or all(
         kind_of_unit(unit) != "unknown" for unit in units
     )
 
 
-def _are_units(rows: Sequence[_Row], count: int) -> bool:
-    """Whether the last of some lines holds a unit for each column, in brackets or not, one of them a length."""
-    kinds = [kind_of_unit(field.strip("[]()")) for field in rows[-1].fields if field not in ("", "-")]
-    return len(rows[-1].fields) >= count and "length" in kinds and "unknown" not in kinds
+def _are_units(fields: Sequence[str], table: Table) -> bool:
+    """Whether a line holds a unit for each column of numbers, in brackets or not, one of a length or a force."""
+    of_numbers = [field for n, field in enumerate(fields) if n not in table.texts and field not in ("", "-")]
+    kinds = [kind_of_unit(field.strip("[]()")) for field in of_numbers]
+    telling = "length" in kinds or any(field.strip("[]()") in VOCABULARY.newtons for field in of_numbers)
+    return len(fields) >= table.width and telling and "unknown" not in kinds

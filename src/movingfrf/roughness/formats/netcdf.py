@@ -1,4 +1,4 @@
-"""netCDF 4: what xarray and many others open; keeps everything that a profile knows."""
+"""netCDF: what xarray and many others open; keeps everything that a profile knows."""
 
 from __future__ import annotations
 
@@ -6,17 +6,22 @@ from pathlib import Path
 
 from movingfrf._basics.netcdf_file import as_netcdf
 from movingfrf._basics.output import Content
-from movingfrf.roughness.formats import arrays, hdf
+from movingfrf.roughness.formats import arrays, classic, hdf
 from movingfrf.roughness.formats.base import Format, RawProfile, Wanted
 from movingfrf.roughness.profile import Profile
 
 
 def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read distance and elevation, and where they come from."""
-    with hdf.opened(path) as content:
+    with (classic if classic.recognises(_head(path)) else hdf).opened(path) as content:
         found = arrays.raw_profile(content.arrays, wanted, "netCDF", content.unread)
     source, steps = content.attributes["source"], content.attributes["steps"]
     return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(16)
 
 
 def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
@@ -39,7 +44,7 @@ FORMAT = Format(
     "netcdf",
     "netCDF",
     (".nc", ".nc4", ".h5"),
-    lambda head: head.startswith(hdf.SIGNATURE),
+    lambda head: head.startswith(hdf.SIGNATURE) or classic.recognises(head),
     read,
     made,
     several=True,

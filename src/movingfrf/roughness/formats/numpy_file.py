@@ -1,7 +1,9 @@
-"""NumPy files of named arrays, .npz."""
+"""NumPy files: of named arrays, .npz, and of one array, .npy."""
 
 from __future__ import annotations
 
+import io
+import zipfile
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,7 +20,7 @@ from movingfrf.roughness.profile import Profile
 
 def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read distance and elevation, or the arrays that are named, and where they come from."""
-    stored = numpy_file.stored_arrays(bytes_of(path))
+    stored = numpy_file.stored_arrays(_packed(bytes_of(path)))
     numbers = {
         name: arrays.Array(each.shape, partial(_floats, each))
         for name, each in stored.items()
@@ -28,6 +30,16 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
     found = arrays.raw_profile(numbers, wanted, "NumPy file", unread)
     source, steps = (_text(stored.get(name)) for name in ("source", "steps"))
     return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
+
+
+def _packed(data: bytes) -> bytes:
+    """Put a single array among named ones."""
+    if not data.startswith(b"\x93NUMPY"):
+        return data
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w") as archive:
+        archive.writestr("array.npy", data)
+    return made.getvalue()
 
 
 def _floats(stored: numpy_file.Stored) -> FloatArray:
@@ -57,8 +69,8 @@ def made(profile: Profile, encoding: str = "") -> dict[str, Content]:
 FORMAT = Format(
     "npz",
     "NumPy",
-    (".npz",),
-    lambda head: head.startswith(b"PK\x03\x04") and b".npy" in head[:300],
+    (".npz", ".npy"),
+    lambda head: head.startswith(b"\x93NUMPY") or (head.startswith(b"PK\x03\x04") and b".npy" in head[:300]),
     read,
     made,
     several=True,

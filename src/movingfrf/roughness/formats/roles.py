@@ -21,11 +21,14 @@ class Vocabulary:
 
     # Seconds in one unit of time.
     seconds: Mapping[str, float]
+    # Newton in one unit of force, as they are written: mN and MN differ.
+    newtons: Mapping[str, float]
     # Words of a name that tell its role, in English, German, French, Spanish and Italian: the first in this order
     # that a name has. A compound counts by its end or its beginning, as its language has it.
     words: Sequence[tuple[Role, re.Pattern[str]]]
     # Words that tell one path from another.
     sides: re.Pattern[str]
+    force: re.Pattern[str]  # words that name one
     # Units of anything but length and time: quotients, powers, degrees, per cents, forces, voltages.
     other_unit: re.Pattern[str]
 
@@ -37,6 +40,15 @@ VOCABULARY = Vocabulary(
         **dict.fromkeys(("us", "µs", "μs"), 1e-6),
         **dict.fromkeys(("min", "minutes"), 60.0),
         **dict.fromkeys(("h", "hr", "hour", "hours"), 3600.0),
+    },
+    newtons={
+        "N": 1.0,
+        "daN": 10.0,
+        **dict.fromkeys(("kN", "KN"), 1e3),
+        "MN": 1e6,
+        **dict.fromkeys(("kgf", "kp"), 9.80665),
+        **dict.fromkeys(("lbf", "lb", "lbs"), 4.4482216152605),
+        **dict.fromkeys(("kip", "kips", "klbf"), 4448.2216152605),
     },
     words=(
         (
@@ -89,6 +101,9 @@ VOCABULARY = Vocabulary(
     sides=re.compile(
         r"left|right|l|r|links|rechts|gauche|droite?|izquierd[ao]|derech[ao]|sinistr[ao]|destr[ao]|inner|outer|"
         r"cent(er|re)|middle|mitte|[a-z]*wp|wheel|path|wheelpath|track|rail|lane|spur"
+    ),
+    force=re.compile(
+        r"f[xyz]?|forces?|weight|gewicht|.*loads?|.*kr(a|ä|ae)fte?|.*last(en)?|effort|fuerza|forza|charge|carga|carico"
     ),
     other_unit=re.compile(
         r".*[/%°²³^*].*|deg\.?|degrees?(_north|_east)?|rad|c|k|celsius|g|hz|v|mv|n|kn|kg|t|mph|kmh|kph|kmph|knots|"
@@ -159,6 +174,8 @@ def kind_of_unit(unit: str) -> Literal["length", "time", "other", "unknown"]:
         return "length"
     if word in VOCABULARY.seconds:
         return "time"
+    if unit.strip() in VOCABULARY.newtons:
+        return "other"
     return "other" if VOCABULARY.other_unit.fullmatch(word) else "unknown"
 
 

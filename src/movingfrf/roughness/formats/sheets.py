@@ -5,7 +5,12 @@ A damaged file may make the library crash, or take memory without end, so it is 
 
 from __future__ import annotations
 
+import csv
+import io
+import re
 import zipfile
+from collections.abc import Iterable
+from itertools import zip_longest
 from pathlib import Path
 from typing import NamedTuple
 
@@ -42,16 +47,56 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
 
 def _sheet(name: str, text: bytes, wanted: Wanted) -> Sheet:
     try:
-        raw = columns.table(text, wanted)
+        raw = _table(text, wanted)
     except ValueError as error:
         return Sheet(name, None, f"sheet {name[:40]!r}, {_rows(str(error))}")
     understood = raw.understood.replace("separated by tabs", f"sheet {name[:40]!r}")
-    return Sheet(name, raw._replace(understood=understood, place=lambda row: _rows(raw.place(row))))
+    return Sheet(
+        name, raw._replace(understood=understood, place=lambda row: f"sheet {name[:40]!r}, {_rows(raw.place(row))}")
+    )
+
+
+def _table(text: bytes, wanted: Wanted) -> RawProfile:
+    """Read the table of a sheet; where that fails, without the few cells that stand beside it."""
+    try:
+        return columns.table(text, wanted)
+    except ValueError:
+        if (parts := _parted(text)) is None or _is_table(parts[1]):
+            raise
+        found = columns.table(parts[0], wanted)
+        return found._replace(understood=f"{found.understood}, without the cells beside the table")
+
+
+def _is_table(text: bytes) -> bool:
+    try:
+        columns.table(text, Wanted())
+    except ValueError:
+        return False
+    return True
+
+
+def _parted(text: bytes) -> tuple[bytes, bytes] | None:
+    """Part the columns before an empty one from those behind; None if nearly all rows do not stand before it."""
+    rows = list(csv.reader(io.StringIO(text.decode(), newline=""), delimiter="\t"))
+    filled = [sum(bool(cell) for cell in column) for column in zip_longest(*rows, fillvalue="")]
+    if 0 not in filled[1:]:
+        return None
+    first = filled.index(0, 1)
+    few = 0.25  # of as many rows as the table, or it would be another one [0.05 to 0.5]
+    if max(filled[first:]) > few * max(filled[:first]):
+        return None
+    return _as_text(row[:first] for row in rows), _as_text(row[first + 1 :] for row in rows)
+
+
+def _as_text(rows: Iterable[list[str]]) -> bytes:
+    made = io.StringIO()
+    csv.writer(made, delimiter="\t", lineterminator="\n").writerows(rows)
+    return made.getvalue().encode()
 
 
 def _rows(said: str) -> str:
     """Say of a sheet what was said of its text."""
-    return said.replace("line ", "row ", 1).replace(" separated by tabs", "").replace("\\t", " | ")
+    return re.sub(r"^line (?=\d)", "row ", said).replace(" separated by tabs", "").replace("\\t", " | ")
 
 
 def _recording(sheet: Sheet) -> Recording:

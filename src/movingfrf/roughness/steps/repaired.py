@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.checks import checking
-from movingfrf._basics.wording import told_apart
+from movingfrf._basics.wording import place, told_apart
 from movingfrf.roughness.profile import SLACK, Profile, require_profile
 from movingfrf.roughness.steps.base import Step, changed, like
 
@@ -58,7 +58,7 @@ def repaired(profile: Profile, *, spike: float, window: float = 1.0, longest: fl
             least, got = told_apart(3 * step, window)
             check.refuse("window", f"must hold three stations, {least} m, got {got} m")
     stations, elevation = profile.stations, profile.columns.copy()
-    replaced, worst, place = 0, 0.0, 0.0
+    replaced, worst, where = 0, 0.0, 0.0
     for column in elevation.T:
         out = np.abs(column - median_filter(column, size, mode="mirror")) > spike
         if not out.any():
@@ -68,18 +68,18 @@ def repaired(profile: Profile, *, spike: float, window: float = 1.0, longest: fl
         if out[0] or out[-1] or gaps.max() > longest * (1 + SLACK):
             at = stations[0] if out[0] else stations[-1] if out[-1] else stations[there[gaps.argmax()]]
             raise ValueError(
-                f"spikes make a gap of more than {longest:g} m, or one at an end, near {at:g} m: they are no "
+                f"spikes make a gap of more than {longest:g} m, or one at an end, near {place(at)} m: they are no "
                 "spikes; crop the profile there"
             )
         replaced += int(out.sum())
         if gaps.max() > worst:
-            worst, place = float(gaps.max()), float(stations[there[gaps.argmax()] + 1])
+            worst, where = float(gaps.max()), float(stations[there[gaps.argmax()] + 1])
         column[out] = np.interp(stations[out], stations[there], column[there])
     found = (
         f"replaced {replaced} spike{'s' * (replaced != 1)} of more than {spike:g} m over the median of {window:g} m"
     )
-    where = f": the longest gap {worst:.4g} m at {place:g} m" if replaced else ""
-    return changed(profile, found + where, elevation=like(profile, elevation))
+    found += f": the longest gap {worst:.4g} m at {place(where)} m" if replaced else ""
+    return changed(profile, found, elevation=like(profile, elevation))
 
 
 STEP = Step(repaired, {"spike": "spike"})
