@@ -273,6 +273,8 @@ def test_scenario_command_and_python_ask_for_steps_by_the_same_keys(tmp_path, ca
         "units",
         "speed",
         "skip_lines",
+        "missing",
+        "reverse",
         "across",
         "crop_rims",
         "repair_gaps",
