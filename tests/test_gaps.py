@@ -306,8 +306,11 @@ def test_the_place_of_a_fault_is_that_of_the_file(tmp_path):
 
 def test_sections_one_behind_the_other_are_named(tmp_path):
     file = written(tmp_path / "two.csv", [np.tile(X[:50], 3), Z[:150]])
-    with pytest.raises(ValueError, match=r"line 52: distance must increase.* falls 2 times in all: recordings one"):
+    with pytest.raises(ValueError, match=r"line 52: distance must increase.* begins again 2 times: recordings one"):
         mf.read_profile(file)
+    slip = written(tmp_path / "slip.csv", [np.delete(np.append(X[:50], X[48]), 48), Z[:50]])
+    with pytest.raises(ValueError, match=r"12350\.4 m$"):
+        mf.read_profile(slip)
 
 
 def test_what_was_done_to_any_piece_is_said(cells):

@@ -153,12 +153,13 @@ def with_all_stations(raw: RawProfile) -> RawProfile:
 
 def _why(steps: FloatArray) -> str:
     """Say what may be the reason why stations do not increase, and what to do."""
-    falls = steps < 0
-    if falls.all():
+    if (steps < 0).all():
         return f": it falls throughout, and {option('reverse')} turns it round"
-    if falls.any() and falls.sum() <= (1 - STANDING.nearly_all) * steps.size:
+    # A fall of some steps is a slip.
+    restarts = int((steps < -STANDING.hole * np.quantile(np.abs(steps), STANDING.nearly_all)).sum())
+    if restarts:
         return (
-            f"; it falls {count(int(falls.sum()), 'time')} in all: recordings one behind the other, which are not "
+            f"; it begins again {count(restarts, 'time')}: recordings one behind the other, which are not "
             "joined, each belong in a file or a sheet of their own"
         )
     return ""
