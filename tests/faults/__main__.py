@@ -37,6 +37,9 @@ SELECTION = [
     "tests/test_one_path.py",
     "tests/test_random_command.py",
     "tests/test_door.py",
+    "tests/test_words.py",
+    "tests/test_in_the_hand.py",
+    "tests/test_export.py",
 ]
 
 # These first where the fault lies in files of profiles, what is done to them and what is said of them.
@@ -148,7 +151,8 @@ def outcome(fault: Fault | None) -> tuple[int, str]:
         copy = Path(folder).resolve()
         for part in ("src", "tests", "docs", "examples"):
             shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
-        shutil.copy(ROOT / "pyproject.toml", copy)
+        for file in ("pyproject.toml", "README.md"):
+            shutil.copy(ROOT / file, copy)
         if fault:
             path = copy / "src" / "movingfrf" / fault.file
             path.write_text(path.read_text().replace(fault.old, fault.new))
