@@ -328,7 +328,7 @@ def test_what_is_read_is_shown_in_a_few_lines(tmp_path):
     read = mf.read_profile(tmp_path / "road.csv")
     lines = repr(read).splitlines()
     assert lines[0] == "ReadProfile"
-    assert lines[1:-1] == repr(read.profile).splitlines()[1:] or len(lines) < 9
+    assert [line.split() for line in lines[1:-1]] == [line.split() for line in repr(read.profile).splitlines()[1:]]
     assert lines[-1].split(maxsplit=1) == ["understood", read.understood]
     table = read._repr_html_()
     assert table.startswith("<table><caption>ReadProfile</caption>")

@@ -38,6 +38,9 @@ SELECTION = [
     "tests/test_random_command.py",
     "tests/test_door.py",
     "tests/test_matlab_vehicles.py",
+    "tests/test_words.py",
+    "tests/test_in_the_hand.py",
+    "tests/test_export.py",
 ]
 
 # These first where it lies in how files of arrays and texts are taken apart.
@@ -157,7 +160,8 @@ def outcome(fault: Fault | None) -> tuple[int, str]:
         copy = Path(folder).resolve()
         for part in ("src", "tests", "docs", "examples"):
             shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
-        shutil.copy(ROOT / "pyproject.toml", copy)
+        for file in ("pyproject.toml", "README.md"):
+            shutil.copy(ROOT / file, copy)
         if fault:
             path = copy / "src" / "movingfrf" / fault.file
             path.write_text(path.read_text().replace(fault.old, fault.new))

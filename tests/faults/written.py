@@ -48,12 +48,7 @@ FAULTS = [
     Fault("nothing written, though it was", "_basics/ending.py", "if placed else", "if not placed else"),
     Fault("half a set", "_basics/output.py", "with undisturbed():", "with suppress(ValueError):"),
     Fault("interrupt that is swallowed", "_basics/undoing.py", "signal.raise_signal(got)", "int(got)"),
-    Fault(
-        "folder that nobody knows",
-        "_basics/undoing.py",
-        "raise OSError(error.errno, said)",
-        "raise OSError(error.errno, said, str(folder))",
-    ),
+    Fault("place of a full disk unsaid", "_basics/undoing.py", ", while it is {doing} in {folder.parent}", ""),
     Fault(
         "full disk taken for a damaged sheet",
         "roughness/formats/sheet_child.py",
