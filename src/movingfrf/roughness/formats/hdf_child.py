@@ -28,6 +28,12 @@ def text(value: Any) -> str:
     return value if isinstance(value, str) else ""
 
 
+def unit_of(item: h5py.Dataset) -> str:
+    """Read the unit, whatever its attribute is called, and whether it is a text or an array of one."""
+    found = (np.asarray(item.attrs[name]).ravel() for name in item.attrs if name.lower() in ("units", "unit"))
+    return next((text(value[0]) for value in found if value.size == 1), "")
+
+
 def numbers_attribute(item: h5py.Dataset, attribute: str, like: np.dtype | None = None) -> np.ndarray:
     """Read an attribute of numbers, of which netCDF has one or a few; none if it is something else.
 
@@ -118,7 +124,7 @@ def extract(file: Path, folder: Path, most: float) -> None:
             made = io.BytesIO()
             np.save(made, values(item))
             keep(folder / f"{len(listed)}.npy", made.getbuffer())
-            listed.append({"name": name, "shape": item.shape, "unit": text(item.attrs.get("units", ""))})
+            listed.append({"name": name, "shape": item.shape, "unit": unit_of(item)})
         attributes = {name: text(opened.attrs.get(name, "")) for name in ("source", "steps")}
     content = {"arrays": listed, "attributes": attributes, "unread": unread}
     keep(folder / "index.json", json.dumps(content).encode())

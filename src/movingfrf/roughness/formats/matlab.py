@@ -26,7 +26,8 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
     numbers = {
         name: arrays.Array(stored.shape, stored.load) for name, stored in (found.numbers | found.fields).items()
     }
-    return arrays.raw_profile(numbers, wanted, "MATLAB file", found.unread)
+    texts = {name: " ".join(load()) for name, load in found.texts.items() if "unit" in name.lower()}
+    return arrays.raw_profile(numbers, wanted, "MATLAB file", found.unread, texts)
 
 
 def made(profile: Profile, encoding: str = "") -> dict[str, Content]:

@@ -25,7 +25,8 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
         if each.kind in tuple("fiu")
     }
     unread = {name: "no plain array of real numbers" for name, each in stored.items() if each.kind in ("", "c")}
-    found = arrays.raw_profile(numbers, wanted, "NumPy file", unread)
+    texts = {name: _text(each) for name, each in stored.items() if "unit" in name.lower()}
+    found = arrays.raw_profile(numbers, wanted, "NumPy file", unread, texts)
     source, steps = (_text(stored.get(name)) for name in ("source", "steps"))
     return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
 
