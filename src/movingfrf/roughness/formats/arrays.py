@@ -118,7 +118,7 @@ def raw_profile(
 
 
 def _unit(called: str, array: Array) -> str | None:
-    """Unit of an array: its own, or that in its name."""
+    """Find the unit of an array: its own, or that in its name."""
     return array.unit or head(_bare(re.sub(r", (column|row) \d.*", "", called))).unit
 
 

@@ -110,8 +110,8 @@ def metres(unit: str, what: str) -> float:
     if length is None:
         raise ValueError(
             f"the unit {unit.strip()[:30]!r} of {what} is not known; lengths may be in "
-            f"{', '.join(dict.fromkeys(u for u in METRES if len(u) < 3 and u.isascii()))}, with a number before it too "
-            f"(0.1mm); {option('units')} says which it is, {option('columns')} chooses other columns"
+            f"{', '.join(dict.fromkeys(u for u in METRES if len(u) < 3 and u.isascii()))}, with a number "
+            f"before it too (0.1mm); {option('units')} says which it is, {option('columns')} chooses other columns"
         )
     return length
 

@@ -1,4 +1,4 @@
-"""Which columns or arrays are the stations and the elevations: by names, units and values, of one recording or several.
+"""Which columns or arrays are the stations and the elevations: by names, units and values.
 
 Text, spreadsheets and files of arrays are all decided here.
 """
@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -21,22 +20,10 @@ from movingfrf.roughness.formats.roles import (
     implied_unit,
     kind_of_unit,
     names_a_path,
+    outside,
     rest_of,
     words_of,
 )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Likeness:
-    """When values are those of stations; in brackets, between what each number is safe."""
-
-    # Share of the steps that go up: a damaged row or two do not matter, elevations go up half the time [0.6 to 0.99].
-    rising: float = 0.9
-    # Share of the length by which two stationings of one road may differ: odometers and roundings [1e-3 to 0.05].
-    same: float = 0.01
-
-
-LIKENESS = Likeness()
 
 
 class Array(NamedTuple):
@@ -94,12 +81,12 @@ def choose(series: Sequence[Series], *, ordered: bool) -> dict[str, Choice]:
     """Tell stations and elevations, of each recording that there is.
 
     The station is what is called so and goes up; of several that do, the first with a unit, if all tell the same
-    road. Else a time; else, where nothing has a name that says it, the first column, or the only array that goes up.
-    Elevations are those that are called so and those that nothing but sides describes (`left`); where none is called
-    so, those with sides or a unit of length, or else what no name describes, if that is one kind of thing.
+    road. Else a time; else, where no name says it, the first column, or the only array that goes up.
+    Elevations are those that are called so and those that nothing but a side describes (`left`); where none is
+    called so, those with sides or a unit of length, or else what no name describes, if that is one kind of thing.
 
-    Several recordings are stations and elevations with a word or a number in common (`x1` and `z1`, `x2` and `z2`), or
-    columns in turns: a station and its elevations, another and its own.
+    Several recordings are stations and elevations with a word or a number in common (`x1` and `z1`, `x2` and
+    `z2`), or columns in turns: a station and its elevations, another and its own.
 
     Parameters
     ----------
@@ -129,12 +116,12 @@ def choose(series: Sequence[Series], *, ordered: bool) -> dict[str, Choice]:
 def _by_keys(series: Sequence[Series], stations: Sequence[int], ordered: bool) -> dict[str, Choice]:
     """Find recordings by what names have in common."""
     keys = [rest_of(each.name) for each in series]
-    found = {}
+    found = dict[str, Choice]()
     for station in stations:
         own = [n for n, key in enumerate(keys) if key == keys[station]]
         if [n for n in own if n in stations] == [station] and len(own) > 1:
             choice = _one(series, own, ordered)
-            found |= {keys[station]: choice} if choice.whole else {}
+            found |= {keys[station] or series[station].name: choice} if choice.whole else {}
     return found if len(found) > 1 else {}
 
 
@@ -160,7 +147,9 @@ def _one(series: Sequence[Series], among: Sequence[int], ordered: bool) -> Choic
     names = {_plain(series[n].name): n for n in among}
     for along, beside in VOCABULARY.maps:
         pair = names.get(along), names.get(beside)
-        if station in pair and None not in pair and not {*pair} & {*elevations} - {station}:
+        if station not in pair or None in pair or {*pair} & {*elevations}:
+            continue
+        if all(np.ptp(series[n].values()) > 0 for n in pair if n is not None):  # else it runs along one of them
             raise Unclear(f"{along} and {beside} may be coordinates of a map")
     return Choice(station, elevations, timed)
 
@@ -190,7 +179,7 @@ def _station(series: Sequence[Series], among: Sequence[int], ordered: bool) -> t
 
 
 def _first(series: Sequence[Series], unknown: list[int]) -> int | None:
-    """Find the station by the order of columns: the first, unless it counts or another is the only one that goes up."""
+    """Find the station by the order of columns: the first, unless it counts or only another goes up."""
     if len(unknown) > 2:
         counting, second, third = (series[n].values() for n in unknown[:3])
         if counts(counting) and increases(second) and not increases(third):
@@ -220,16 +209,18 @@ def _same_road(one: Series, other: Series) -> bool:
     if not there.any():
         return True
     off = (a - b)[there]
-    return bool(np.ptp(off) <= LIKENESS.same * np.ptp(a[there]))
+    return bool(np.ptp(off) <= VOCABULARY.same * np.ptp(a[there]))
 
 
 def _elevations(series: Sequence[Series], among: Sequence[int], count: int, ordered: bool) -> list[int]:
     """Find the elevations to a station with so many values."""
     called = [n for n in among if series[n].head.role == "elevation"]
     unknown = [n for n in among if series[n].head.role == "unknown" and series[n].array.fits(count)]
+    if ordered and len(unknown) > 1:
+        unknown = [n for n in unknown if not is_counter(series[n].name, series[n].head, series[n].values())]
     sides = [n for n in unknown if names_a_path(series[n].name)]
     if called:
-        return sorted([*called, *sides])
+        return sorted([*called, *(n for n in sides if _has_length(series[n]) or _which(series[n].name))])
     found = sides or [n for n in unknown if _has_length(series[n])] or unknown
     kinds = {_kind(series[n].name) for n in found}
     if len(found) > 1 and found != sides and (len(kinds) > 1 or not ordered):
@@ -239,8 +230,13 @@ def _elevations(series: Sequence[Series], among: Sequence[int], count: int, orde
 
 def _kind(name: str) -> str:
     """Tell what a name says besides a side, a number, a letter and a unit."""
-    words = words_of(re.sub(r"\[.*|\(.*", "", name))
+    words = words_of(outside(name))
     return " ".join(word for word in words if len(word) > 1 and not VOCABULARY.sides.fullmatch(word))
+
+
+def _which(name: str) -> bool:
+    """Whether a name says which path it is about: the number of the path stands under `wheel path`."""
+    return not all(map(VOCABULARY.any_path.fullmatch, words_of(outside(name))))
 
 
 def _has_length(each: Series) -> bool:
@@ -253,7 +249,13 @@ def increases(values: FloatArray) -> bool:
     return bool(there.size > 1 and (np.diff(there) > 0).all())
 
 
+def is_counter(name: str, said: Head, values: FloatArray) -> bool:
+    """Tell a column that no name and no unit describes and that does nothing but count."""
+    return said == Head("unknown") and not names_a_path(name) and counts(values)
+
+
 def _rises(values: FloatArray) -> bool:
-    """Tell whether nearly every value is more than the one before."""
+    """Tell whether values are as those of stations, of which some may be twice there, or damaged."""
     there = values[np.isfinite(values)]
-    return bool(there.size > 1 and (np.diff(there) > 0).mean() >= LIKENESS.rising)
+    steps = np.diff(there)
+    return bool(steps.size and (steps < 0).mean() <= VOCABULARY.falling and (steps > 0).mean() > 0.5)

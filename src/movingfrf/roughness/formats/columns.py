@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
@@ -27,7 +28,7 @@ from movingfrf.roughness.formats.base import (
     scaled,
     units_taken,
 )
-from movingfrf.roughness.formats.choice import Array, Choice, Series, Unclear, choose
+from movingfrf.roughness.formats.choice import Array, Choice, Series, Unclear, choose, is_counter
 from movingfrf.roughness.formats.fields import (
     WRITING,
     Line,
@@ -261,6 +262,8 @@ def _reasons(head: Columns, values: FloatArray, used: Sequence[int], able: Seque
     """Say why columns of numbers are not taken."""
     said = {n: _why(head.heads[n]) for n in able if n not in used}
     for n in said:
+        if is_counter(head.names[n], head.heads[n], values[:, n]):
+            said[n] = "is a counter"
         if head.heads[n].role == "label" and np.ptp(values[np.isfinite(values[:, n]), n]) > 0:
             said[n] = "changes along the way"
     return said
@@ -316,10 +319,8 @@ def _words(
     if head.lines or taken.left:
         words.append(f"columns {listed([names[n] for n in taken.used])}")
     if taken.left:
-        words.append(
-            "without "
-            + ", ".join(f"{names[n]!r} ({why.removeprefix('is ')})" for n, why in sorted(taken.left.items()))
-        )
+        said = [f"{names[n]!r} ({re.sub('^(is|holds) ', '', why)})" for n, why in sorted(taken.left.items())]
+        words.append(f"without {', '.join(said)}")
     units = dict(zip(taken.used, stated, strict=True))
     if head.heads[taken.used[0]] == Head("unknown") and counts(stations):
         words.append("the first column does nothing but count: taken as a distance, one unit a row")

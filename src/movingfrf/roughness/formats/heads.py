@@ -93,7 +93,7 @@ def _columns(names: list[str], units: list[str] | None, count: int, skipped: lis
 
 
 def _declared(columns: Columns, texts: Sequence[str]) -> Columns:
-    """Take in units that lines above a table tell: of each column in turn, of station and elevations, or by name."""
+    """Take in units that lines above a table tell: of each column, of station and elevations, or by name."""
     along: str | None = None
     up: str | None = None
     heads = columns.heads

@@ -13,6 +13,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import arrays
 from movingfrf.roughness.formats.base import Format, RawProfile, Wanted, bytes_of
+from movingfrf.roughness.formats.choice import Array
 from movingfrf.roughness.profile import Profile
 
 
@@ -20,7 +21,7 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read distance and elevation, or the arrays that are named, and where they come from."""
     stored = numpy_file.stored_arrays(bytes_of(path))
     numbers = {
-        name: arrays.Array(each.shape, partial(_floats, each))
+        name: Array(each.shape, partial(_floats, each))
         for name, each in stored.items()
         if each.kind in tuple("fiu")
     }

@@ -18,7 +18,7 @@ Role = Literal["station", "elevation", "across", "time", "counter", "label", "ot
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Vocabulary:
-    """What files are written with."""
+    """What files are written with; in brackets, between what a number is safe."""
 
     # Seconds in one unit of time.
     seconds: Mapping[str, float]
@@ -35,6 +35,12 @@ class Vocabulary:
     sides: re.Pattern[str]
     # Units of anything but length and time: quotients, powers, degrees, per cents, forces, voltages.
     other_unit: re.Pattern[str]
+    # Words that a path has, whichever it is.
+    any_path: re.Pattern[str]
+    # Share of the steps of stations that may go down: a few damaged rows; elevations do half the time [0.01 to 0.3].
+    falling: float = 0.1
+    # Share of the length by which two stationings of one road may differ: odometers and roundings [1e-3 to 0.05].
+    same: float = 0.01
 
 
 VOCABULARY = Vocabulary(
@@ -80,7 +86,8 @@ VOCABULARY = Vocabulary(
             "time",
             re.compile(r"t|time|times|timestamp|datetime|date|utc|.*zeit|datum|temps|tiempo|tempo|seconds?|hours?"),
         ),
-        ("elevation", re.compile(r".*profil.*")),  # a profile's distance is none
+        ("elevation", re.compile(r".*profil.*|perfil.*")),  # a profile's distance is none
+        ("other", re.compile(r"alignment")),  # but a vertical one
         (
             "counter",
             re.compile(
@@ -92,7 +99,7 @@ VOCABULARY = Vocabulary(
             "label",  # what tells stretches of road apart, and what is said of a station
             re.compile(
                 r"lanes?|fahrstreifen|direction|richtung|section|abschnitt|route|run|year|jahr|flag|valid|status|event|"
-                r"code|alignment|remarks?|comments?|notes?|bemerkung.*|kommentar.*"
+                r"code|remarks?|comments?|notes?|bemerkung.*|kommentar.*"
             ),
         ),
     ),
@@ -104,18 +111,15 @@ VOCABULARY = Vocabulary(
     maps=(("x", "y"), ("east", "north"), ("easting", "northing"), ("rechts", "hoch"), ("e", "n")),
     plain=frozenset(("mm", "cm", "ft", "um", "µm", "μm", "inches", "мм")),
     sides=re.compile(
-        r"left|right|l|r|links|rechts|gauche|droite?|izquierd[ao]|derech[ao]|sinistr[ao]|destr[ao]|inner|outer|"
+        r"left|right|l|r|links|rechts|gauche|droite?|izquierd[ao]|izq|derech[ao]|der|sinistr[ao]|destr[ao]|inner|outer|"
         r"cent(er|re)|middle|mitte|[a-z]*wp|wheel|path|wheelpath|track|rail|lane|spur"
     ),
     other_unit=re.compile(
         r".*[/%°²³^*].*|deg\.?|degrees?(_north|_east)?|rad|c|k|celsius|g|hz|v|mv|n|kn|kg|t|mph|kmh|kph|kmph|knots|"
         r"bar|pa"
     ),
+    any_path=re.compile(r"[a-z]?wp|wheel|path|wheelpath|track|rail|lane|spur"),
 )
-
-
-# What stands in brackets.
-_BRACKETS = re.compile(r"\[[^\]]*\]|\([^)]*\)")
 
 
 class Head(NamedTuple):
@@ -147,7 +151,7 @@ def head(name: str, unit: str = "") -> Head:
     (Head(role='station', unit='ft'), Head(role='elevation', unit='mm'), Head(role='time', unit='ms'), \
 Head(role='unknown', unit=None))
     """
-    words = words_of(_BRACKETS.sub(" ", name))
+    words = words_of(outside(name))
     stated = unit.strip().strip("[]()").strip() or (unit_in(name) or "").strip()
     if kind_of_unit(stated) == "unknown" and (within := _unit_among(words)) is not None:
         stated = words.pop(within)
@@ -165,8 +169,8 @@ Head(role='unknown', unit=None))
 
 
 def implied_unit(name: str) -> str | None:
-    """Find the unit that a station's name says: that of kilometres is km; empty where it could be one or another."""
-    words = words_of(_BRACKETS.sub(" ", name))
+    """Find the unit that a station's name says, as kilometres do; empty where it could be one or another."""
+    words = words_of(outside(name))
     told = (unit for pattern, unit in VOCABULARY.implied if any(map(pattern.fullmatch, words)))
     return next(told, None)
 
@@ -247,6 +251,11 @@ def words_of(name: str) -> list[str]:
     return [word.lower() for word in re.findall(r"[^\W\d_]+", _split(name))]
 
 
+def outside(name: str) -> str:
+    """Leave out of a name what stands in brackets."""
+    return re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name)
+
+
 def _split(name: str) -> str:
     """Put a blank before every capital letter that begins a word."""
     return re.sub(r"([a-zäöü])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3 \2\4", name)
@@ -260,7 +269,7 @@ def rest_of(name: str) -> str:
     >>> rest_of("x1"), rest_of("Elevation_left [mm]"), rest_of("distance")
     ('1', 'left', '')
     """
-    found = re.findall(r"[^\W\d_]+|\d+", _split(_BRACKETS.sub(" ", name)).lower())
+    found = re.findall(r"[^\W\d_]+|\d+", _split(outside(name)).lower())
     if (within := _unit_among(found)) is not None:
         found.pop(within)
     told = [pattern for role, pattern in VOCABULARY.words if role in ("station", "elevation")]
@@ -269,7 +278,7 @@ def rest_of(name: str) -> str:
 
 def names_a_path(name: str) -> bool:
     """Tell whether a name does nothing but tell one path from another."""
-    words = words_of(_BRACKETS.sub(" ", name))
+    words = words_of(outside(name))
     if (within := _unit_among(words)) is not None:
         words.pop(within)
     return bool(words) and all(map(VOCABULARY.sides.fullmatch, words))
@@ -300,9 +309,10 @@ def _role(words: Sequence[str]) -> Role:
 
 
 def _unit_among(words: Sequence[str]) -> int | None:
-    """Find a unit among the words of a name: the last, one of length or of time behind a word for time, or a plain one.
+    """Find a unit among the words of a name.
 
-    A name that is nothing but a unit of length (`m`) counts.
+    It is the last, a length, or a time behind a word for time; or a plain one, wherever it stands. A name that is
+    nothing but a unit of length (`m`) counts.
     """
     last = len(words) - 1
     if last >= 0 and (words[last] in METRES and (last or _role(words) == "unknown")):
