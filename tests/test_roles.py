@@ -105,7 +105,7 @@ def test_several_markers_and_gaps_beside_them():
         np.where(np.arange(100) == 50, -0.0999, 0.0),  # a pothole
         np.linspace(0.0, 999.0, 200),  # a mountain
         np.linspace(0.0, 0.949, 950) + np.where(np.arange(950) > 400, 0.05, 0.0),  # with a kerb, up to 0.999 m
-        np.full(50, -9999.0),
+        np.full(50, 12.0),
         np.where(np.arange(100) > 50, 200.0, 100.0),  # two levels
         np.full(50, np.nan),
         np.array([0.0, 1.0]),

@@ -263,7 +263,7 @@ FAULTS = [
     ),
     Fault("a damaged row is a trailing line", "roughness/formats/fields.py", "{2,}[^\\d]*", "{1,}.*"),
     Fault("letterless exponent lost", "roughness/formats/fields.py", "|(?<=[\\d.])(?=[+-]\\d{3}$)", ""),
-    Fault("a counter for a station", "roughness/formats/columns.py", "if _counter_first(", "if False and ("),
+    Fault("a counter for a station", "roughness/formats/choice.py", "if counts(counting) and", "if False and"),
     Fault("an unnamed column for a station", "roughness/formats/heads.py", 'Head("counter")', 'Head("station")'),
     Fault(
         "units asked for forgotten",
@@ -322,7 +322,9 @@ FAULTS = [
     Fault("single precision is uneven", "roughness/profile.py", "uneven = 0.02", "uneven = 1e-6"),
     Fault("six digits whatever it takes", "_basics/wording.py", "range(digits, 18)", "range(digits, digits + 1)"),
     Fault("a kerb for a marker", "roughness/sentinels.py", "if off > STANDING.steps * step", "if True"),
-    Fault("unit of a name overlooked", "roughness/formats/roles.py", "stated = words.pop()", "words.pop()"),
+    Fault(
+        "unit of a name overlooked", "roughness/formats/roles.py", "stated = words.pop(within)", "words.pop(within)"
+    ),
     Fault(
         "a reference followed anywhere",
         "roughness/formats/crg.py",

@@ -418,9 +418,13 @@ def _completed(raw: RawProfile, repair_gaps: float | None) -> RawProfile:
         n = int(falls[0])
         one, next_one = told_apart(raw.stations[n], raw.stations[n + 1])
         raise ValueError(f"{raw.place(n + 1)}: distance must increase, got {one} m followed by {next_one} m")
-    infinite = np.argwhere(np.isinf(raw.elevations))
-    if infinite.size:
-        raise ValueError(f"{raw.place(int(infinite[0][0]))}: elevation must be finite, got inf")
+    beyond = np.argwhere(np.abs(raw.elevations) > 1e20)  # what a profile may hold at most
+    if beyond.size:
+        row, path = map(int, beyond[0])
+        raise ValueError(
+            f"{raw.place(row)}: elevation must be finite, got {raw.elevations[row, path]:g} m; what marks "
+            "a missing elevation must be left empty in the file"
+        )
     gaps = [gap for path in range(raw.elevations.shape[1]) for gap in _gaps(raw, path)]
     if not gaps:
         return raw

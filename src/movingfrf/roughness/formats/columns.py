@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import option
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats.base import (
@@ -28,20 +28,22 @@ from movingfrf.roughness.formats.base import (
     scaled,
     units_taken,
 )
-from movingfrf.roughness.formats.choice import Array, Choice, Series, Unclear, choose, is_counter
+from movingfrf.roughness.formats.choice import Array, Choice, Series, Unclear, choose, increases, is_counter
 from movingfrf.roughness.formats.fields import (
     WRITING,
     Line,
     Numbers,
     Table,
     as_text,
+    bare,
     find_table,
     line_of,
     lines,
     numbers,
 )
 from movingfrf.roughness.formats.heads import Columns, columns_of
-from movingfrf.roughness.formats.roles import Head, counts, kind_of_unit, require_unit, scales_of
+from movingfrf.roughness.formats.roles import Head, counts, kind_of_unit, outside, require_unit, scales_of
+from movingfrf.roughness.formats.roles import head as told_by
 from movingfrf.roughness.profile import Profile
 
 
@@ -101,12 +103,18 @@ def table(data: bytes, wanted: Wanted) -> RawProfile:
         raise ValueError(f"line {max(rows.first - 1, 1)}: {error}") from None
 
     def place(row: int) -> str:
-        return f"line {line_of(data, encoding, rows, row)}"
+        return f"line {line_of(data, encoding, rows, int(those[row]))}"
 
     values = [scaled(found.values[:, n], scale) for n, scale in zip(taken.used, scales, strict=True)]
+    those: IntArray = np.arange(len(values[0]))
     if taken.several:  # the table goes on where another recording does
-        end = 1 + int(np.flatnonzero(np.isfinite(values).any(axis=0))[-1])
-        values = [column[:end] for column in values]
+        those = those[: 1 + int(np.flatnonzero(np.isfinite(values).any(axis=0))[-1])]
+    elif labelled := _by_label(data, encoding, rows, head, values[0]):
+        runs = [Recording(name, own.size, float(np.ptp(values[0][own]))) for name, own in labelled.items()]
+        those = labelled[runs[chosen_recording(runs, wanted.recording)].name]
+    elif wanted.recording is not None:
+        raise ValueError(f"is {FORMAT.title}, which holds one recording: {option('recording')} has no choice")
+    values = [column[those] for column in values] if those.size < len(values[0]) else values
     return RawProfile(
         values[0],
         np.stack(values[1:], axis=1),
@@ -236,8 +244,6 @@ def _taken(head: Columns, found: Numbers, wanted: Wanted) -> Taken:
     if several:
         recordings = [_recording(name, series, choice) for name, choice in choices.items()]
         choice = choices[recordings[chosen_recording(recordings, wanted.recording)].name]
-    elif wanted.recording is not None:
-        raise ValueError(f"is {FORMAT.title}, which holds one recording: {option('recording')} has no choice")
     else:
         (choice,) = choices.values()
     if choice.station is None or not choice.elevations:
@@ -260,7 +266,7 @@ def _recording(name: str, series: Sequence[Series], choice: Choice) -> Recording
 
 def _reasons(head: Columns, values: FloatArray, used: Sequence[int], able: Sequence[int]) -> dict[int, str]:
     """Say why columns of numbers are not taken."""
-    said = {n: _why(head.heads[n]) for n in able if n not in used}
+    said = {n: _why(head.names[n], head.heads[n]) for n in able if n not in used}
     for n in said:
         if is_counter(head.names[n], head.heads[n], values[:, n]):
             said[n] = "is a counter"
@@ -271,23 +277,25 @@ def _reasons(head: Columns, values: FloatArray, used: Sequence[int], able: Seque
 
 def _excuses(head: Columns, left: dict[int, str], able: Sequence[int]) -> str:
     """Say of columns that are not what is looked for what they are."""
-    said = {**left, **{n: _why(head.heads[n]) for n in able if head.heads[n].role in ("counter", "label", "other")}}
+    other = [n for n in able if head.heads[n].role in ("counter", "label", "other")]
+    said = {**left, **{n: _why(head.names[n], head.heads[n]) for n in other}}
     return f" ({', '.join(f'{head.names[n]!r} {why}' for n, why in sorted(said.items()))})" if said else ""
 
 
-def _why(head: Head) -> str:
+def _why(name: str, told: Head) -> str:
     """Say what a column is that is not taken."""
-    if head.role == "other" and kind_of_unit(head.unit or "") == "other":
-        return f"is in {head.unit!r}, no unit of length"
+    if told.role == "other" and told_by(outside(name)).role == "elevation":
+        return f"is in {told.unit!r}, no unit of length"
     said = {
         "other": "is no elevation",
         "label": "is no elevation",
         "time": "is a time",
         "counter": "is a counter",
         "station": "is another station",
+        "elevation": "is of another recording",
         "across": "is a lateral position",
     }
-    return said.get(head.role, "is not called an elevation")
+    return said.get(told.role, "is not called an elevation")
 
 
 def _own_units(head: Columns, taken: Taken) -> list[str | None]:
@@ -297,11 +305,34 @@ def _own_units(head: Columns, taken: Taken) -> list[str | None]:
     return [station or along, *(unit or up for unit in elevations)]
 
 
+def _by_label(data: bytes, encoding: str, rows: Table, head: Columns, stations: FloatArray) -> dict[str, IntArray]:
+    """Find recordings below each other, which a run, a lane and the like tell apart where stations begin anew."""
+    if increases(stations):
+        return {}
+    for n in (n for n, each in enumerate(head.heads) if each.role == "label"):
+        labels = np.array(list(_fields(data, encoding, rows, n)))
+        own = {label: np.flatnonzero(labels == label) for label in dict.fromkeys(labels.tolist())}
+        if (
+            len(labels) == len(stations)
+            and 1 < len(own)
+            and all(increases(stations[rows]) for rows in own.values())
+        ):
+            return {f"{head.names[n]} {label}": those for label, those in own.items()}
+    return {}
+
+
 def _stationing(data: bytes, encoding: str, rows: Table, column: int) -> bool:
     """Whether stations are written as kilometres and metres, `12+345.6`."""
-    below = (line for line in lines(data[: rows.end], encoding) if line.number >= rows.first)
-    fields = (rows.fields(line.text) for line in islice(below, WRITING.alike))
-    return any(column < len(each) and WRITING.chainage.fullmatch(each[column]) for each in fields)
+    shown = islice(_fields(data, encoding, rows, column), WRITING.alike)
+    return any(map(WRITING.chainage.fullmatch, shown))
+
+
+def _fields(data: bytes, encoding: str, rows: Table, column: int) -> Iterator[str]:
+    """Fields of a column as they are written."""
+    for line in lines(data[: rows.end], encoding):
+        if line.number >= rows.first and bare(line.text, rows.separator).strip():
+            fields = rows.fields(line.text)
+            yield fields[column] if column < len(fields) else ""
 
 
 def _words(

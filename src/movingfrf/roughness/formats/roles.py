@@ -37,7 +37,7 @@ class Vocabulary:
     other_unit: re.Pattern[str]
     # Words that a path has, whichever it is.
     any_path: re.Pattern[str]
-    # Share of the steps of stations that may go down: a few damaged rows; elevations do half the time [0.01 to 0.3].
+    # Share of the steps of stations that may go down, in damaged rows; elevations do half the time [0.01 to 0.3].
     falling: float = 0.1
     # Share of the length by which two stationings of one road may differ: odometers and roundings [1e-3 to 0.05].
     same: float = 0.01
