@@ -177,8 +177,7 @@ def _sort_in(found: Contents, matrix: _Matrix, within: str, depth: int = 0) -> N
         stored = Stored(shape, partial(_numbers, matrix, shape, name))
         (found.fields if within else found.numbers)[name] = stored
     elif kind in (LEVEL_5.cell, LEVEL_5.text):
-        if not within:
-            found.texts[name] = partial(_texts, matrix, kind)
+        found.texts[name] = partial(_texts, matrix, kind)
         if kind == LEVEL_5.cell:
             found.unread[name] = "a cell array"
     elif kind in LEVEL_5.structs and depth < LEVEL_5.deepest:

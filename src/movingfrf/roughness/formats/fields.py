@@ -363,7 +363,7 @@ def _ended(data: bytes, encoding: str, table: Table) -> Table:
             if set(text) & {";", ",", "\t"}:  # a row of empty cells
                 below.append(Line(0, text))
                 end = place
-        elif _is_footer(fields):
+        elif _is_footer([field for n, field in enumerate(fields) if n not in table.texts or len(fields) == 1]):
             below.append(Line(0, text))
             end = place
         else:
