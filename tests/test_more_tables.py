@@ -1,4 +1,4 @@
-"""Tables and arrays as people have them: one rule for station, counter, map, recordings and units, wherever they stand."""
+"""Tables and arrays as people have them: one rule for station, counter, map, recordings and units."""
 
 import numpy as np
 import pytest
@@ -192,7 +192,6 @@ def test_recordings_below_each_other_are_not_joined(tmp_path, labels, name):
 
 
 def test_a_lane_that_changes_is_said(tmp_path):
-    text = "lane,x [m],z [mm]\n" + lines("{x},{z}").replace("\n", "\n1,", 2).replace("\n", "\n2,")
     text = "lane,x [m],z [mm]\n" + "".join(
         f"{1 + (n > 2)},{line}\n" for n, line in enumerate(lines("{x},{z}").splitlines())
     )
@@ -241,7 +240,7 @@ STATIONS = [
     "Sensor position [m],Distance [m],Elevation [mm]\n" + lines("0.75,{x},{z}"),
     "Axle distance [m],Travel [m],Height [mm]\n" + lines("2.5,{x},{z}"),
     "km,m,z [mm]\n" + lines("12,{x},{z}"),
-    "km,distance,z [mm]\n" + "".join(f"12.{x * 1000:06.0f},{x},{1e3 * z}\n" for x, z in zip(X, Z, strict=True)),
+    "km,distance,z [mm]\n" + "".join(f"12.00,{x},{1e3 * z}\n" for x, z in zip(X, Z, strict=True)),
     "Hoogte [mm],Afstand [m]\n" + lines("{z},{x}"),
     "X,Y,Z\n" + lines("{x},0.75,{z}", up=1.0),
     lines("{c} {x} {z}", up=1.0),
@@ -302,4 +301,4 @@ def test_what_has_no_unit_of_length_is_said(tmp_path):
     with pytest.raises(ValueError, match=r"'z \[mm²/m\]' is in 'mm²/m', no unit of length"):
         read(tmp_path, "x [m],z [mm²/m]\n" + lines("{x},{z}"))
     with pytest.raises(ValueError, match=r"'z \[mm\]' holds no numbers"):
-        read(tmp_path, "x [m],z [mm]\n" + lines("{x},a"))
+        read(tmp_path, "x [m];z [mm]\n" + "".join(f"{x};0,{n}\n" for n, x in enumerate(X)))

@@ -326,6 +326,48 @@ FAULTS = [
         "unit of a name overlooked", "roughness/formats/roles.py", "stated = words.pop(within)", "words.pop(within)"
     ),
     Fault(
+        "unit of an array's name overlooked",
+        "roughness/formats/arrays.py",
+        "return array.unit or head(",
+        "return array.unit or None and head(",
+    ),
+    Fault(
+        "kilometres of stationing twice",
+        "roughness/formats/columns.py",
+        "and _stationing(",
+        "and False and _stationing(",
+    ),
+    Fault(
+        "units above a table overlooked",
+        "roughness/formats/heads.py",
+        "declared=(along, up)",
+        "declared=(None, None)",
+    ),
+    Fault(
+        "recordings side by side joined",
+        "roughness/formats/choice.py",
+        "return found if len(found) > 1 else {}",
+        "return {}",
+    ),
+    Fault(
+        "recordings in turns joined",
+        "roughness/formats/choice.py",
+        "(_in_turns(series, stations) if ordered else {})",
+        "{}",
+    ),
+    Fault(
+        "a map for a distance", "roughness/formats/choice.py", "if station not in pair or None in pair", "if True"
+    ),
+    Fault(
+        "a number of a path for elevations",
+        "roughness/formats/choice.py",
+        "if _has_length(series[n]) or _which(",
+        "if True or _which(",
+    ),
+    Fault(
+        "a kilometre of one metre", "roughness/formats/roles.py", 'stated = implied_unit(name) or ""', 'stated = ""'
+    ),
+    Fault(
         "a reference followed anywhere",
         "roughness/formats/crg.py",
         "or not target.resolve().is_relative_to(path.parent.resolve())",

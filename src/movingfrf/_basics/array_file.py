@@ -112,7 +112,9 @@ def _read_mat(path: Path, content: Content) -> Arrays:
     try:
         found = matlab_file.arrays_and_texts(data)
         numbers = {name: stored.load() for name, stored in found.numbers.items()}
-        return numbers | {name: load() if name in content.texts else [] for name, load in found.texts.items()}
+        return numbers | {
+            name: load() if name in content.texts else [] for name, load in found.texts.items() if "." not in name
+        }
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 

@@ -113,7 +113,7 @@ def _is_marker(value: float) -> bool:
 def _again(column: FloatArray, value: float) -> bool:
     """Whether a value below zero is written like a marker of two digits, and stands at several places."""
     short = value < 0 and any(map(STANDING.short.fullmatch, _written(value, (1.0, 1e-3))))
-    return short and np.count_nonzero(np.diff(column == value, prepend=False, append=False)) > 2
+    return short and int(np.count_nonzero(np.diff(column == value, prepend=False, append=False))) > 2
 
 
 def _written(value: float, units: Iterable[float]) -> Iterator[str]:
