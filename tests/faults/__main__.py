@@ -41,6 +41,7 @@ SELECTION = [
 
 # These first where the fault lies in files of profiles, what is done to them and what is said of them.
 PROFILES = [
+    "tests/test_more_tables.py",
     "tests/test_tables.py",
     "tests/test_preparation.py",
     "tests/test_roles.py",
