@@ -184,7 +184,7 @@ REFERENCE = "$CT\ninvented\n$!***\n$ROAD_CRG_FILE\n%s\n$!***\n"
         ("none.crg", r"refers to 'none\.crg', which is not there"),
         ("", "refers to '', which is not there"),
         ("../plain.crg", r"refers to '\.\./plain\.crg', which is not followed: read that file itself"),
-        ("$$HOME/plain.crg", r"refers to '\$HOME/plain\.crg', which is not there"),
+        ("$$HOME/plain.crg", r"refers to '\$HOME/plain\.crg', which is not followed"),
         ("again.crg", r"refers to 'again\.crg', which refers to 'plain\.crg' in turn"),
         ("ref.crg", r"refers to 'ref\.crg', which is not followed"),
     ],

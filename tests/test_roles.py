@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from movingfrf.roughness.formats.roles import counts, head, kind_of_unit, sort_out
+from movingfrf.roughness.formats.choice import Array, Series, choose
+from movingfrf.roughness.formats.roles import counts, head, kind_of_unit
 from movingfrf.roughness.sentinels import sentinels
 
 
@@ -52,11 +53,20 @@ def test_a_name_and_a_unit_say_what_it_is(name, unit, role, found):
     assert head(name, unit) == (role, found)
 
 
+def series(**values):
+    return [Series(name, head(name), Array((len(each),), lambda each=each: each)) for name, each in values.items()]
+
+
+X, Z = np.linspace(0.0, 1.0, 9), np.array([0.0, 3.0, 1.0, 2.0, 0.0, 3.0, 1.0, 2.0, 0.0])
+
+
 def test_station_and_elevations_by_name_wherever_they_stand():
-    heads = [head(name) for name in ("no", "elevation [mm]", "time [s]", "right [mm]", "remark", "distance [m]")]
-    found = sort_out(heads)
-    assert (found.station, found.elevations, found.time, found.left) == (5, [1, 3], 2, [0, 4])
-    assert sort_out([head("a"), head("b")]).station is None
+    names = ("no", "elevation [mm]", "time [s]", "right [mm]", "remark", "distance [m]")
+    found = series(**dict(zip(names, (X, Z, X, Z, Z, X), strict=True)))
+    for ordered in (True, False):
+        assert choose(found, ordered=ordered) == {"": (5, [1, 3], False)}
+    assert choose(series(a=X, b=Z), ordered=True) == {"": (0, [1], False)}
+    assert choose(series(a=Z, b=X), ordered=False) == {"": (1, [0], False)}
 
 
 def test_counters_and_units():
@@ -95,7 +105,7 @@ def test_several_markers_and_gaps_beside_them():
         np.where(np.arange(100) == 50, -0.0999, 0.0),  # a pothole
         np.linspace(0.0, 999.0, 200),  # a mountain
         np.linspace(0.0, 0.949, 950) + np.where(np.arange(950) > 400, 0.05, 0.0),  # with a kerb, up to 0.999 m
-        np.full(50, -9999.0),
+        np.full(50, 12.0),
         np.where(np.arange(100) > 50, 200.0, 100.0),  # two levels
         np.full(50, np.nan),
         np.array([0.0, 1.0]),

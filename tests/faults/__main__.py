@@ -49,6 +49,7 @@ FILES = ["tests/test_matlab_vehicles.py", "tests/test_toml_words.py"]
 # These first where the fault lies in files of profiles, what is done to them and what is said of them.
 PROFILES = [
     "tests/test_gaps.py",
+    "tests/test_more_tables.py",
     "tests/test_tables.py",
     "tests/test_preparation.py",
     "tests/test_classic_files.py",

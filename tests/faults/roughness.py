@@ -263,7 +263,7 @@ FAULTS = [
     ),
     Fault("a damaged row is a trailing line", "roughness/formats/fields.py", "{2,}[^\\d]*", "{1,}.*"),
     Fault("letterless exponent lost", "roughness/formats/fields.py", "|(?<=[\\d.])(?=[+-]\\d{3}$)", ""),
-    Fault("a counter for a station", "roughness/formats/columns.py", "if _counter_first(", "if False and ("),
+    Fault("a counter for a station", "roughness/formats/choice.py", "if counts(counting) and", "if False and"),
     Fault("an unnamed column for a station", "roughness/formats/heads.py", 'Head("counter")', 'Head("station")'),
     Fault(
         "units asked for forgotten",
@@ -322,7 +322,51 @@ FAULTS = [
     Fault("single precision is uneven", "roughness/profile.py", "uneven = 0.02", "uneven = 1e-6"),
     Fault("six digits whatever it takes", "_basics/wording.py", "range(digits, 18)", "range(digits, digits + 1)"),
     Fault("a kerb for a marker", "roughness/sentinels.py", "if off > STANDING.steps * step", "if True"),
-    Fault("unit of a name overlooked", "roughness/formats/roles.py", "stated = words.pop()", "words.pop()"),
+    Fault(
+        "unit of a name overlooked", "roughness/formats/roles.py", "stated = words.pop(within)", "words.pop(within)"
+    ),
+    Fault(
+        "unit of an array's name overlooked",
+        "roughness/formats/arrays.py",
+        "return array.unit or head(",
+        "return array.unit or None and head(",
+    ),
+    Fault(
+        "kilometres of stationing twice",
+        "roughness/formats/columns.py",
+        "and _stationing(",
+        "and False and _stationing(",
+    ),
+    Fault(
+        "units above a table overlooked",
+        "roughness/formats/heads.py",
+        "declared=(along, up)",
+        "declared=(None, None)",
+    ),
+    Fault(
+        "recordings side by side joined",
+        "roughness/formats/choice.py",
+        "return found if len(found) > 1 else {}",
+        "return {}",
+    ),
+    Fault(
+        "recordings in turns joined",
+        "roughness/formats/choice.py",
+        "(_in_turns(series, stations) if ordered else {})",
+        "{}",
+    ),
+    Fault(
+        "a map for a distance", "roughness/formats/choice.py", "if station not in pair or None in pair", "if True"
+    ),
+    Fault(
+        "a number of a path for elevations",
+        "roughness/formats/choice.py",
+        "if _has_length(series[n]) or _which(",
+        "if True or _which(",
+    ),
+    Fault(
+        "a kilometre of one metre", "roughness/formats/roles.py", 'stated = implied_unit(name) or ""', 'stated = ""'
+    ),
     Fault(
         "a reference followed anywhere",
         "roughness/formats/crg.py",

@@ -130,9 +130,13 @@ def with_all_stations(raw: RawProfile) -> RawProfile:
         raise ValueError(
             f"{raw.place(n + 1)}: distance must increase, got {one} m followed by {next_one} m{_why(steps)}"
         )
-    infinite = np.argwhere(np.isinf(raw.elevations))
-    if infinite.size:
-        raise ValueError(f"{raw.place(int(infinite[0][0]))}: elevation must be finite, got inf")
+    beyond = np.argwhere(np.abs(raw.elevations) > 1e20)  # what a profile may hold at most
+    if beyond.size:
+        row, path = map(int, beyond[0])
+        raise ValueError(
+            f"{raw.place(row)}: elevation must be finite, got {raw.elevations[row, path]:g} m; what marks a "
+            f"missing elevation is named by {option('missing')}"
+        )
     if steps.size < 2:
         return raw
     holes = np.flatnonzero(steps > STANDING.hole * np.quantile(steps, STANDING.nearly_all))

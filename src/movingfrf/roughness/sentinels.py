@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -33,6 +34,8 @@ class Standing:
     height: float = 50.0
     # Markers as they are written: nines alone, those of log files, the ends of whole numbers.
     markers: re.Pattern[str] = re.compile(r"9{3,}(\.9+)?|999\.25|3276[78]|65535|214748364[78]")
+    # Those that a pothole may have too: they count where they stand at several places.
+    short: re.Pattern[str] = re.compile(r"99(\.9+)?")
     most: int = 4  # different markers that are looked for on one path, low and high [a convention]
     # Times the step that nearly all do not exceed, from which on stations are missing: survey by hand has twice, a
     # logger that drops points three times [3 to 20].
@@ -81,8 +84,13 @@ def _of_path(column: FloatArray) -> list[Sentinel]:
     there = column[np.isfinite(column)]
     # The lowest and the highest values, each with what lies between it and the next one towards the middle.
     ends = _lowest(there) + [(-value, off) for value, off in _lowest(-there)]
-    candidates = [value for value, off in ends if off > STANDING.height or _is_marker(value)]
+    candidates = [
+        value for value, off in ends if off > STANDING.height or _is_marker(value) or _again(column, value)
+    ]
     rest = there[~np.isin(there, candidates)]
+    if there.size > 1 and not np.ptp(there) and _is_marker(there[0]):  # nothing else is there
+        value, first = float(there[0]), int(np.flatnonzero(column == there[0])[0])
+        return [Sentinel(value, there.size, abs(value), first)]
     if rest.size < 2:
         return []
     step = float(np.abs(np.diff(rest)).max())
@@ -106,5 +114,15 @@ def _lowest(values: FloatArray) -> list[tuple[float, float]]:
 
 def _is_marker(value: float) -> bool:
     """Whether a value is written like a marker, in metres or in whatever unit the file has."""
-    written = (f"{abs(value) / metres:.6f}".rstrip("0").rstrip(".") for metres in {*METRES.values()})
-    return any(map(STANDING.markers.fullmatch, written))
+    return any(map(STANDING.markers.fullmatch, _written(value, METRES.values())))
+
+
+def _again(column: FloatArray, value: float) -> bool:
+    """Whether a value below zero is written like a marker of two digits, and stands at several places."""
+    short = value < 0 and any(map(STANDING.short.fullmatch, _written(value, (1.0, 1e-3))))
+    return short and int(np.count_nonzero(np.diff(column == value, prepend=False, append=False))) > 2
+
+
+def _written(value: float, units: Iterable[float]) -> Iterator[str]:
+    """Write a value in units of length [m], without its sign."""
+    return (f"{abs(value) / metres:.6f}".rstrip("0").rstrip(".") for metres in {*units})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -17,12 +17,14 @@ from movingfrf.roughness.formats.base import (
     Wanted,
     chosen_columns,
     chosen_recording,
+    length_of,
     listed,
     metres,
     scaled,
     units_taken,
 )
-from movingfrf.roughness.formats.roles import Head, counts, head, names_a_path, rest_of, scales_of, sort_out
+from movingfrf.roughness.formats.choice import Array, Choice, Series, Unclear, choose, increases
+from movingfrf.roughness.formats.roles import Head, counts, head, kind_of_unit, require_unit, scales_of, words_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,28 +43,6 @@ class ArrayNames:
 ARRAY_NAMES = ArrayNames()
 
 
-class Array(NamedTuple):
-    """An array that is not read before it is needed."""
-
-    shape: tuple[int, ...]
-    load: Callable[[], FloatArray]
-    unit: str = ""
-
-    @property
-    def length(self) -> int:
-        """Number of values along its longest side."""
-        return max(self.shape, default=1)
-
-    @property
-    def is_vector(self) -> bool:
-        """Whether only one side has more than one value."""
-        return sum(side != 1 for side in self.shape) == 1
-
-    def fits(self, count: int) -> bool:
-        """Whether it has a row or a column for each of so many stations."""
-        return count in self.shape and len([side for side in self.shape if side != 1]) <= 2
-
-
 class Pick(NamedTuple):
     """Stations and elevations that belong together, each with the name that a sentence gives it."""
 
@@ -72,12 +52,12 @@ class Pick(NamedTuple):
     across: Array | None = None
 
 
-class Unclear(ValueError):
-    """Arrays that belong together do not say which of them is what."""
-
-
 def raw_profile(
-    arrays: Mapping[str, Array], wanted: Wanted, kind: str, unread: Mapping[str, str] | None = None
+    arrays: Mapping[str, Array],
+    wanted: Wanted,
+    kind: str,
+    unread: Mapping[str, str] | None = None,
+    texts: Mapping[str, str] | None = None,
 ) -> RawProfile:
     """Make a raw profile of the arrays in a file.
 
@@ -92,6 +72,8 @@ def raw_profile(
         What kind of file it is, for the message.
     unread : mapping of str to str, optional
         What else is there, and what it is, for the message.
+    texts : mapping of str to str, optional
+        Texts beside the arrays, of which some may be units: `elevation_units`.
 
     Returns
     -------
@@ -103,13 +85,22 @@ def raw_profile(
     ValueError
         If the arrays cannot be told apart, or do not fit each other; with what there is.
     """
+    arrays, general = _with_units(arrays, texts or {})
     pick = _named(arrays, wanted) if wanted.columns is not None else _found(arrays, wanted, unread or {})
     name, stored = pick.stations
     stations = stored.load().ravel()
     parts = [_by_station(array.load(), stations.size, called) for called, array in pick.elevations]
     taken = [pick.stations, *pick.elevations]
-    units = units_taken([array.unit for _, array in taken], wanted.units)
-    timed = head(_bare(name), (wanted.units or [stored.unit])[0]).role == "time"
+    own = [_unit(called, array) for called, array in taken]
+    units = units_taken(own, wanted.units)
+    if units[0] is None:
+        require_unit(_bare(name))
+    if general and None in units and length_of(general) != 1.0:
+        raise ValueError(
+            f"says {general[:30]!r} of its units, and not of what: {option('units')} says those of stations and "
+            "elevations"
+        )
+    timed = head(_bare(name), units[0] or "").role == "time"
     scales = scales_of(units, [f"{called!r}" for called, _ in taken], timed)
     stated = {unit or "metres, since no unit is given" for unit in units}
     across = pick.across
@@ -126,6 +117,26 @@ def raw_profile(
         same_across=not others and first.is_vector and len(first.shape) < 3,
         timed=name if timed else "",
     )
+
+
+def _unit(called: str, array: Array) -> str | None:
+    """Find the unit of an array: its own, or that in its name."""
+    return array.unit or head(_bare(re.sub(r", (column|row) \d.*", "", called))).unit
+
+
+def _with_units(arrays: Mapping[str, Array], texts: Mapping[str, str]) -> tuple[dict[str, Array], str]:
+    """Give arrays the units that texts beside them tell by their names; and a unit that is told of nothing."""
+    found, general = dict(arrays), ""
+    for told, text in texts.items():
+        words = words_of(_bare(told))
+        about = [word for word in words if word not in ("unit", "units")]
+        if len(about) == len(words) or kind_of_unit(text) == "unknown":
+            continue
+        group = told[: len(told) - len(_bare(told))]
+        those = [name for name in arrays if name == group + _bare(name) and words_of(_bare(name)) == about]
+        found |= {name: arrays[name]._replace(unit=text) for name in those}
+        general = general if about else text
+    return found, general
 
 
 def _named(arrays: Mapping[str, Array], wanted: Wanted) -> Pick:
@@ -165,7 +176,7 @@ def _found(arrays: Mapping[str, Array], wanted: Wanted, unread: Mapping[str, str
             unclear.append(error)
     if picks:
         recordings = [
-            Recording(name, pick.stations[1].length, _length(pick.stations[1])) for name, pick in picks.items()
+            Recording(name, pick.stations[1].length, _length(*pick.stations)) for name, pick in picks.items()
         ]
         return picks[recordings[chosen_recording(recordings, wanted.recording)].name]
     there = "; ".join(
@@ -221,87 +232,59 @@ def _picked(own: Mapping[str, Array], above: Mapping[str, Array]) -> dict[str, P
         across = own.get(bare.get(ARRAY_NAMES.across, ""))
         return {"": Pick((one, own[one]), [(other, own[other])], [], across)}
     long = {name: array for name, array in own.items() if array.length >= ARRAY_NAMES.least}
-    heads = {name: head(_bare(name), array.unit) for name, array in long.items()}
-    stations = [name for name, each in heads.items() if each.role == "station" and long[name].is_vector]
-    if not stations and above and any(each.role in ("elevation", "unknown") for each in heads.values()):
-        stations, long = list(above), {**above, **long}
-        heads = {name: head(_bare(name), array.unit) for name, array in long.items()}
-    if len(stations) > 1:
-        return _side_by_side(long, heads, stations)
-    if stations:
-        return {"": pick} if (pick := _with(stations[0], long, heads)) else {}
-    return _nameless(long, heads)
-
-
-def _with(station: str, long: Mapping[str, Array], heads: Mapping[str, Head]) -> Pick | None:
-    """Elevations to a station: those that names and units show; None if there are none."""
-    count = long[station].length
-    names = [name for name in long if name != station]
-    found = sort_out([heads[name] for name in names])
-    called = [names[n] for n in found.elevations if heads[names[n]].role == "elevation"]
-    # What no name calls an elevation must at least fit.
-    elevations = [names[n] for n in found.elevations if names[n] in called or long[names[n]].fits(count)]
-    left = [name for name in names if name not in elevations and long[name].fits(count)]
-    if not elevations:
-        return None
-    if not called and len(elevations) > 1 and not all(names_a_path(_bare(name)) for name in elevations):
-        raise Unclear(f"several may be the elevations: {listed(elevations)}")
-    if {"x", "y"} <= {_bare(name).lower() for name in (station, *left)}:
-        raise Unclear("x and y may be coordinates of a map")
-    across = [long[name] for name in names if heads[name].role == "across" and long[name].is_vector]
-    wide = len(elevations) == 1 and across and across[0].length in long[elevations[0]].shape
-    return Pick(
-        (station, long[station]),
-        [(name, long[name]) for name in elevations],
-        [name for name in left if heads[name].role != "across"],
-        across[0] if wide and across[0].length != count else None,
-    )
-
-
-def _side_by_side(long: Mapping[str, Array], heads: Mapping[str, Head], stations: list[str]) -> dict[str, Pick]:
-    """Find recordings whose stations and elevations share a word or a number: `x1` and `z1`, `x2` and `z2`."""
-    keys = {name: rest_of(_bare(name)) for name in long}
-    picks = {}
-    for station in stations:
-        own = {name: array for name, array in long.items() if name == station or keys[name] == keys[station]}
-        alike = [name for name in stations if keys[name] == keys[station]]
-        if len(alike) == 1 and (pick := _with(station, own, heads)):
-            picks[keys[station]] = pick
-    if not picks or (len(picks) == 1 and "" in picks):
-        raise Unclear(f"several may be the stations: {listed(stations)}")
-    return picks
-
-
-def _nameless(long: Mapping[str, Array], heads: Mapping[str, Head]) -> dict[str, Pick]:
-    """Where no name says station: a table alone, or the only array that increases and the only other."""
-    unnamed = [name for name, each in heads.items() if each.role in ("unknown", "elevation")]
-    increasing = [
-        name
-        for name in unnamed
-        if heads[name].role == "unknown" and long[name].is_vector and _increases(long[name].load().ravel())
-    ]
-    others = [name for name in unnamed if name not in increasing]
-    if len(increasing) == len(others) == 1:
-        if counts(long[increasing[0]].load().ravel()):
-            raise Unclear(f"{increasing[0]!r} does nothing but count")
-        return {"": Pick((increasing[0], long[increasing[0]]), [(others[0], long[others[0]])], [])}
-    tables = {} if increasing else {name: long[name] for name in unnamed if _is_table(long[name])}
+    series = [Series(_bare(name), _head(name, array), array) for name, array in long.items()]
+    if not _stations(series) and above and any(each.head.role in ("elevation", "unknown") for each in series):
+        long = {**above, **long}
+        series = [Series(_bare(name), _head(name, array), array) for name, array in long.items()]
+    tables = {} if _stations(series) else _tables(long, series)
     if tables:
-        return {"" if len(tables) == 1 else _bare(name): _columns_of(name, table) for name, table in tables.items()}
-    times = [name for name, each in heads.items() if each.role == "time"]
-    along = next((name for name in times if long[name].is_vector), None)
-    pick = None if along is None else _with(along, long, heads)
-    return {"": pick} if pick else {}
+        return tables
+    names = list(long)
+    return {
+        key: _pick(choice, names, series) for key, choice in choose(series, ordered=False).items() if choice.whole
+    }
 
 
-def _increases(values: FloatArray) -> bool:
-    return bool((np.diff(values) > 0).all())
+def _head(name: str, array: Array) -> Head:
+    return head(_bare(name), array.unit)
+
+
+def _stations(series: Sequence[Series]) -> bool:
+    return any(each.head.role == "station" and each.array.is_vector for each in series)
+
+
+def _pick(choice: Choice, names: Sequence[str], series: Sequence[Series]) -> Pick:
+    assert choice.station is not None
+    count = series[choice.station].array.length
+    taken = [(names[n], series[n].array) for n in (choice.station, *choice.elevations)]
+    across = [each.array for each in series if each.head.role == "across" and each.array.is_vector]
+    wide = len(taken) == 2 and across and across[0].length in taken[1][1].shape
+    left = [
+        names[n]
+        for n, each in enumerate(series)
+        if n not in (choice.station, *choice.elevations) and each.array.fits(count) and each.head.role != "across"
+    ]
+    return Pick(taken[0], taken[1:], left, across[0] if wide and across[0].length != count else None)
+
+
+def _tables(long: Mapping[str, Array], series: Sequence[Series]) -> dict[str, Pick]:
+    """Find matrices that hold stations and elevations, where no vector goes up that could be the stations."""
+    unnamed = {
+        name: each for name, each in zip(long, series, strict=True) if each.head.role in ("unknown", "elevation")
+    }
+    if any(
+        each.head.role == "unknown" and each.array.is_vector and increases(each.values())
+        for each in unnamed.values()
+    ):
+        return {}
+    tables = {name: long[name] for name in unnamed if _is_table(long[name])}
+    return {"" if len(tables) == 1 else _bare(name): _columns_of(name, table) for name, table in tables.items()}
 
 
 def _is_table(array: Array) -> bool:
     """Whether a matrix holds stations in its first column, or its first row where that is the longer side."""
     sides = array.shape
-    return len(sides) == 2 and 1 < min(sides) < max(sides) and _increases(_lying(array)[:, 0])
+    return len(sides) == 2 and 1 < min(sides) < max(sides) and increases(_lying(array)[:, 0])
 
 
 def _lying(array: Array) -> FloatArray:
@@ -313,7 +296,7 @@ def _lying(array: Array) -> FloatArray:
 def _columns_of(name: str, array: Array) -> Pick:
     """Stations and elevations of a matrix; a first column that counts is none where the second increases too."""
     values = _lying(array)
-    first = int(values.shape[1] > 2 and counts(values[:, 0]) and _increases(values[:, 1]))
+    first = int(values.shape[1] > 2 and counts(values[:, 0]) and increases(values[:, 1]))
     line = "column" if array.shape[0] >= array.shape[1] else "row"
     count, width = values.shape[0], values.shape[1] - first - 1
 
@@ -335,10 +318,10 @@ def _columns_of(name: str, array: Array) -> Pick:
     )
 
 
-def _length(stations: Array) -> float:
-    values = stations.load().ravel()
+def _length(called: str, stations: Array) -> float:
+    values, unit = stations.load().ravel(), _unit(called, stations)
     try:
-        return float(values[-1] - values[0]) * metres(stations.unit or "m", "") if values.size else float("nan")
+        return float(values[-1] - values[0]) * metres(unit or "m", "") if values.size else float("nan")
     except ValueError:
         return float("nan")
 

@@ -19,30 +19,22 @@ ColumnKey = str | int
 
 # Metres in one unit of length.
 METRES = {
-    "m": 1.0,
-    "metre": 1.0,
-    "metres": 1.0,
-    "meter": 1.0,
-    "meters": 1.0,
-    "dm": 0.1,
-    "cm": 0.01,
-    "mm": 1e-3,
-    "um": 1e-6,
-    "µm": 1e-6,
-    "μm": 1e-6,  # the Greek letter
-    "km": 1e3,
-    "in": 0.0254,
-    "in.": 0.0254,
-    "inch": 0.0254,
-    "inches": 0.0254,
-    "ft": 0.3048,
-    "ft.": 0.3048,
-    "foot": 0.3048,
-    "feet": 0.3048,
-    "yd": 0.9144,
-    "mi": 1609.344,
-    "mile": 1609.344,
-    "miles": 1609.344,
+    unit: length
+    for units, length in (
+        ("m metre metres meter meters mètre mètres м", 1.0),
+        ("dm decimetre decimetres decimeter decimeters", 0.1),
+        ("cm centimetre centimetres centimeter centimeters см", 0.01),
+        ("mm millimetre millimetres millimeter millimeters millimètre millimètres мм", 1e-3),
+        ("um µm μm micron microns micrometre micrometres micrometer micrometers", 1e-6),  # two letters of one look
+        ("km kilometre kilometres kilometer kilometers км", 1e3),
+        ("in in. inch inches", 0.0254),
+        ("mil mils thou", 0.0254e-3),
+        ("ft ft. foot feet", 0.3048),
+        ("ftus usft", 1200 / 3937),
+        ("yd yard yards", 0.9144),
+        ("mi mile miles", 1609.344),
+    )
+    for unit in units.split()
 }
 
 
@@ -117,20 +109,30 @@ def metres(unit: str, what: str) -> float:
     ValueError
         If it is not a unit of length.
     """
-    word = unit.strip().strip("\"'").lower()
-    if word not in METRES:
+    length = length_of(unit)
+    if length is None:
         raise ValueError(
             f"the unit {unit.strip()[:30]!r} of {what} is not known; lengths may be in "
-            f"{', '.join(dict.fromkeys(u for u in METRES if len(u) < 3))}; "
-            f"{option('columns')} chooses other columns"
+            f"{', '.join(dict.fromkeys(u for u in METRES if len(u) < 3 and u.isascii()))}, with a number "
+            f"before it too (0.1mm); {option('units')} says which it is, {option('columns')} chooses other columns"
         )
-    return METRES[word]
+    return length
 
 
-def unit_in(name: str) -> str | None:
-    """Find the unit in a column's name: in square brackets, or else in round ones; None without brackets."""
-    found = re.search(r"\[([^\]]*)\]", name) or re.search(r"\(([^)]*)\)", name)
-    return found.group(1) if found else None
+def length_of(unit: str) -> float | None:
+    """Metres in a unit of length, with or without a number before it; None if it is no such unit.
+
+    Examples
+    --------
+    >>> length_of("ft"), length_of("0.1 mm"), length_of("1/10 mm"), length_of("s")
+    (0.3048, 0.0001, 0.0001, None)
+    """
+    word = re.sub(r"(us )?survey (ft|foot|feet)", "ftus", unit.strip().strip("\"'").lower())
+    found = re.fullmatch(r"(?:(\d{1,6}(?:[.,]\d{1,6})?)(?:/(\d{1,6}))?[\s*]*)?(\D+)", word)
+    if found is None or found[3] not in METRES:
+        return None
+    parts = float((found[1] or "1").replace(",", ".")), float(found[2] or "1")
+    return METRES[found[3]] * parts[0] / parts[1] if min(parts) > 0 else None
 
 
 def scaled(values: FloatArray, scale: float, missing: Sequence[float] = ()) -> FloatArray:

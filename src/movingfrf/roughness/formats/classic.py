@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf.roughness.formats.arrays import Array
 from movingfrf.roughness.formats.base import bytes_of
+from movingfrf.roughness.formats.choice import Array
 from movingfrf.roughness.formats.hdf import HdfContents
 
 

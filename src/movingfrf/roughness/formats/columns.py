@@ -2,31 +2,48 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import option
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats.base import (
     ColumnKey,
     Format,
     RawProfile,
+    Recording,
     Wanted,
     bytes_of,
     chosen_columns,
+    chosen_recording,
+    length_of,
     listed,
     metres,
     scaled,
     units_taken,
 )
-from movingfrf.roughness.formats.fields import Line, Numbers, Table, as_text, find_table, line_of, numbers
+from movingfrf.roughness.formats.choice import Array, Choice, Series, Unclear, choose, increases, is_counter
+from movingfrf.roughness.formats.fields import (
+    WRITING,
+    Line,
+    Numbers,
+    Table,
+    as_text,
+    bare,
+    find_table,
+    line_of,
+    lines,
+    numbers,
+)
 from movingfrf.roughness.formats.heads import Columns, columns_of
-from movingfrf.roughness.formats.roles import Head, Role, counts, kind_of_unit, scales_of, sort_out
+from movingfrf.roughness.formats.roles import Head, counts, kind_of_unit, outside, require_unit, scales_of
+from movingfrf.roughness.formats.roles import head as told_by
 from movingfrf.roughness.profile import Profile
 
 
@@ -36,6 +53,7 @@ class Taken(NamedTuple):
     used: list[int]  # the station, then elevations
     timed: bool  # whether the station is a time
     left: dict[int, str]  # other columns, and why they are none
+    several: bool = False  # whether the table holds other recordings too
 
 
 def read(path: Path, wanted: Wanted) -> RawProfile:
@@ -68,29 +86,44 @@ def table(data: bytes, wanted: Wanted) -> RawProfile:
     data = _below(data, wanted.skip_lines)
     rows, head = _laid_out(data, encoding)
     found = numbers(data, encoding, rows, all_wanted=False)
-    there = [bool(np.isfinite(column).any()) for column in found.values.T]
     if wanted.columns is not None:
         taken = _asked_for(head, wanted.columns, found.texts)
     else:
-        taken = _taken(head, found.values, found.texts, there)
+        taken = _taken(head, found, wanted)
     found.require(taken.used)
     if wanted.units is not None:
         taken = taken._replace(timed=kind_of_unit(wanted.units[0]) == "time")
-    stated = units_taken([head.units[n] for n in taken.used], wanted.units)
+    stated = units_taken(_own_units(head, taken), wanted.units)
+    if stated[0] is None:
+        require_unit(head.names[taken.used[0]])
+    elif stated[0].strip().lower() == "km" and _stationing(data, encoding, rows, taken.used[0]):
+        stated[0] = "m"  # kilometres and metres are written out
     try:
         scales = scales_of(stated, [f"column {head.names[n]!r}" for n in taken.used], taken.timed)
     except ValueError as error:
         raise ValueError(f"line {max(rows.first - 1, 1)}: {error}") from None
 
     def place(row: int) -> str:
-        return f"line {line_of(data, encoding, rows, row)}"
+        return f"line {line_of(data, encoding, rows, int(those[row]))}"
 
-    along, *columns = (found.values[:, n] for n in taken.used)
-    elevations = [scaled(column, scale, wanted.missing) for column, scale in zip(columns, scales[1:], strict=True)]
+    marked = [(), *[wanted.missing] * (len(scales) - 1)]
+    values = [
+        scaled(found.values[:, n], scale, markers)
+        for n, scale, markers in zip(taken.used, scales, marked, strict=True)
+    ]
+    those: IntArray = np.arange(len(values[0]))
+    if taken.several:  # the table goes on where another recording does
+        those = those[: 1 + int(np.flatnonzero(np.isfinite(values).any(axis=0))[-1])]
+    elif labelled := _by_label(data, encoding, rows, head, values[0]):
+        runs = [Recording(name, own.size, float(np.ptp(values[0][own]))) for name, own in labelled.items()]
+        those = labelled[runs[chosen_recording(runs, wanted.recording)].name]
+    elif wanted.recording is not None:
+        raise ValueError(f"is {FORMAT.title}, which holds one recording: {option('recording')} has no choice")
+    values = [column[those] for column in values] if those.size < len(values[0]) else values
     return RawProfile(
-        scaled(along, scales[0]),
-        np.stack(elevations, axis=1),
-        _words(rows, head, taken, stated, wanted.skip_lines),
+        values[0],
+        np.stack(values[1:], axis=1),
+        _words(rows, head, taken, stated, found.values[:, taken.used[0]], wanted.skip_lines),
         place=place,
         same_across=len(taken.used) == 2,
         timed=head.names[taken.used[0]] if taken.timed else "",
@@ -199,68 +232,130 @@ def _asked_for(head: Columns, columns: Sequence[ColumnKey], texts: frozenset[int
     return Taken(used, head.heads[used[0]].role == "time", {})
 
 
-def _taken(head: Columns, values: FloatArray, texts: frozenset[int], there: Sequence[bool]) -> Taken:
-    """Tell station and elevations by names and units, or else by their order."""
-    heads = head.heads
-    left = {n: "no numbers" if n in texts else "empty" for n in range(len(heads)) if n in texts or not there[n]}
-    able = [n for n in range(len(heads)) if n not in left]
-    told = sort_out([heads[n] for n in able])
-    elevations = [able[n] for n in told.elevations]
-    station = None if told.station is None else able[told.station]
-    if any(heads[n].role == "station" for n in left) and station is None:
+def _taken(head: Columns, found: Numbers, wanted: Wanted) -> Taken:
+    """Tell station and elevations by names, units and values."""
+    heads, values, count = head.heads, found.values, len(head.names)
+    there = [bool(np.isfinite(column).any()) for column in values.T]
+    left = {
+        n: "holds no numbers" if n in found.texts else "is empty"
+        for n in range(count)
+        if n in found.texts or not there[n]
+    }
+    able = [n for n in range(count) if n not in left]
+    series = [
+        Series(head.names[n] if head.lines else "", heads[n], Array((len(values),), lambda n=n: values[:, n]))  # type: ignore[misc]
+        for n in able
+    ]
+    if any(heads[n].role == "station" for n in left) and not any(heads[n].role == "station" for n in able):
         n = min(n for n in left if heads[n].role == "station")
         raise ValueError(f"the column {head.names[n]!r} holds no numbers that could be stations")
-    timed = station is None and told.time is not None
-    if timed:
-        assert told.time is not None
-        station = able[told.time]
-    if station is None:
-        unknown = [n for n in able if heads[n].role == "unknown"]
-        if _counter_first(values[:, unknown]):
-            left[unknown.pop(0)] = _why("counter")
-        station = unknown[0] if unknown else None
-    elevations = [n for n in elevations if n != station and n not in left]
-    if station is None or not elevations:
-        what = "a distance along the road" if station is None else "an elevation"
+    try:
+        choices = choose(series, ordered=True)
+    except Unclear as error:
+        raise ValueError(f"{error}; {option('columns')} names station and elevations") from None
+    several = len(choices) > 1
+    if several:
+        recordings = [_recording(name, series, choice) for name, choice in choices.items()]
+        choice = choices[recordings[chosen_recording(recordings, wanted.recording)].name]
+    else:
+        (choice,) = choices.values()
+    if choice.station is None or not choice.elevations:
+        what = "a distance along the road" if choice.station is None else "an elevation"
         raise ValueError(
             f"none of the columns {listed(head.names)} is {what}{_excuses(head, left, able)}; {option('columns')} "
             "names station and elevations"
         )
-    left |= {n: _why(heads[n].role) for n in able if n not in (station, *elevations) and n not in left}
-    return Taken([station, *elevations], timed, left)
+    used = [able[choice.station], *(able[n] for n in choice.elevations)]
+    return Taken(used, choice.timed, left | _reasons(head, values, used, able), several)
+
+
+def _recording(name: str, series: Sequence[Series], choice: Choice) -> Recording:
+    assert choice.station is not None
+    station = series[choice.station]
+    along = station.values()[np.isfinite(station.values())]
+    scale = length_of(station.head.unit or "m")
+    return Recording(name, along.size, float("nan") if scale is None else float(np.ptp(along)) * scale)
+
+
+def _reasons(head: Columns, values: FloatArray, used: Sequence[int], able: Sequence[int]) -> dict[int, str]:
+    """Say why columns of numbers are not taken."""
+    said = {n: _why(head.names[n], head.heads[n]) for n in able if n not in used}
+    for n in said:
+        if is_counter(head.names[n], head.heads[n], values[:, n]):
+            said[n] = "is a counter"
+        if head.heads[n].role == "label" and np.ptp(values[np.isfinite(values[:, n]), n]) > 0:
+            said[n] = "changes along the way"
+    return said
 
 
 def _excuses(head: Columns, left: dict[int, str], able: Sequence[int]) -> str:
     """Say of columns that are not what is looked for what they are."""
-    said = {**left, **{n: _why(head.heads[n].role) for n in able if head.heads[n].role in ("counter", "other")}}
-    return f" ({', '.join(f'{head.names[n]!r} is {why}' for n, why in sorted(said.items()))})" if said else ""
+    other = [n for n in able if head.heads[n].role in ("counter", "label", "other")]
+    said = {**left, **{n: _why(head.names[n], head.heads[n]) for n in other}}
+    return f" ({', '.join(f'{head.names[n]!r} {why}' for n, why in sorted(said.items()))})" if said else ""
 
 
-def _why(role: Role) -> str:
+def _why(name: str, told: Head) -> str:
     """Say what a column is that is not taken."""
-    said: dict[Role, str] = {
-        "other": "no elevation",
-        "time": "a time",
-        "counter": "a counter",
-        "station": "another station",
-        "across": "a lateral position",
+    if told.role == "other" and told_by(outside(name)).role == "elevation":
+        return f"is in {told.unit!r}, no unit of length"
+    said = {
+        "other": "is no elevation",
+        "label": "is no elevation",
+        "time": "is a time",
+        "counter": "is a counter",
+        "station": "is another station",
+        "elevation": "is of another recording",
+        "across": "is a lateral position",
     }
-    return said.get(role, "not called an elevation")
+    return said.get(told.role, "is not called an elevation")
 
 
-def _counter_first(columns: FloatArray) -> bool:
-    """Whether the first of some columns without names counts, and the second is a station: it alone increases."""
-    if columns.shape[1] < 3 or not counts(columns[:, 0]):
-        return False
-    return bool((np.diff(columns[:, 1]) > 0).all() and not (np.diff(columns[:, 2]) > 0).all())
+def _own_units(head: Columns, taken: Taken) -> list[str | None]:
+    """Units that names have, or else what stands above the table."""
+    along, up = head.declared
+    station, *elevations = (head.units[n] for n in taken.used)
+    return [station or along, *(unit or up for unit in elevations)]
 
 
-def _words(rows: Table, head: Columns, taken: Taken, stated: Sequence[str | None], skip_lines: int) -> str:
+def _by_label(data: bytes, encoding: str, rows: Table, head: Columns, stations: FloatArray) -> dict[str, IntArray]:
+    """Find recordings below each other, which a run, a lane and the like tell apart where stations begin anew."""
+    if increases(stations):
+        return {}
+    for n in (n for n, each in enumerate(head.heads) if each.role == "label"):
+        labels = np.array(list(_fields(data, encoding, rows, n)))
+        own = {label: np.flatnonzero(labels == label) for label in dict.fromkeys(labels.tolist())}
+        if (
+            len(labels) == len(stations)
+            and 1 < len(own)
+            and all(increases(stations[rows]) for rows in own.values())
+        ):
+            return {f"{head.names[n]} {label}": those for label, those in own.items()}
+    return {}
+
+
+def _stationing(data: bytes, encoding: str, rows: Table, column: int) -> bool:
+    """Whether stations are written as kilometres and metres, `12+345.6`."""
+    shown = islice(_fields(data, encoding, rows, column), WRITING.alike)
+    return any(map(WRITING.chainage.fullmatch, shown))
+
+
+def _fields(data: bytes, encoding: str, rows: Table, column: int) -> Iterator[str]:
+    """Fields of a column as they are written."""
+    for line in lines(data[: rows.end], encoding):
+        if line.number >= rows.first and bare(line.text, rows.separator).strip():
+            fields = rows.fields(line.text)
+            yield fields[column] if column < len(fields) else ""
+
+
+def _words(
+    rows: Table, head: Columns, taken: Taken, stated: Sequence[str | None], stations: FloatArray, above: int
+) -> str:
     """Say how the columns were understood."""
     words = [f"separated by {rows.said}"]
     words += ["decimal commas"] * (rows.decimal == ",")
     words.append({0: "no header", 1: "one header line"}.get(head.lines, f"{head.lines} header lines"))
-    above = skip_lines + len(head.skipped)
+    above += len(head.skipped)
     words += [f"{above} {'line' if above == 1 else 'lines'} above left out"] * (above > 0)
     if rows.below:
         words.append(f"{_cited(rows.below)} below left out")
@@ -268,8 +363,11 @@ def _words(rows: Table, head: Columns, taken: Taken, stated: Sequence[str | None
     if head.lines or taken.left:
         words.append(f"columns {listed([names[n] for n in taken.used])}")
     if taken.left:
-        words.append("without " + ", ".join(f"{names[n]!r} ({why})" for n, why in sorted(taken.left.items())))
+        said = [f"{names[n]!r} ({re.sub('^(is|holds) ', '', why)})" for n, why in sorted(taken.left.items())]
+        words.append(f"without {', '.join(said)}")
     units = dict(zip(taken.used, stated, strict=True))
+    if head.heads[taken.used[0]] == Head("unknown") and counts(stations):
+        words.append("the first column does nothing but count: taken as a distance, one unit a row")
     if all(unit is None for unit in stated):
         words.append("no units, taken as metres")
     elif any(unit is None or metres(unit, "") != 1.0 for unit in stated[taken.timed :]):
@@ -293,5 +391,6 @@ FORMAT = Format(
     lambda head: False,
     read,
     made,
+    several=True,
     takes=("units", "skip_lines"),
 )

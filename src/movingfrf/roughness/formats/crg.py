@@ -113,8 +113,6 @@ def _referred(path: Path) -> Path | None:
     if named is None:
         return None
     target = path.parent / named
-    if not named or not target.is_file():
-        raise ValueError(f"refers to {named!r}, which is not there")
     if (
         "$" in named
         or PureWindowsPath(named).drive
@@ -122,6 +120,8 @@ def _referred(path: Path) -> Path | None:
         or target.resolve() == path.resolve()
     ):
         raise ValueError(f"refers to {named!r}, which is not followed: read that file itself")
+    if not named or not target.is_file():
+        raise ValueError(f"refers to {named!r}, which is not there")
     if (further := _reference(target)) is not None:
         raise ValueError(f"refers to {named!r}, which refers to {further!r} in turn: read that file itself")
     return target

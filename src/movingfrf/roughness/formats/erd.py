@@ -24,7 +24,7 @@ from movingfrf.roughness.formats.base import (
     units_taken,
 )
 from movingfrf.roughness.formats.fields import Table, numbers
-from movingfrf.roughness.formats.roles import scales_of
+from movingfrf.roughness.formats.roles import kind_of_unit, scales_of
 from movingfrf.roughness.profile import Profile
 
 
@@ -62,7 +62,8 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
     units = _fields(header, "UNITSNAM", count)
     used = list(range(count)) if wanted.columns is None else chosen_columns(names, wanted.columns)
     along, *taken = units_taken([words.get("XUNITS", "").strip(), *(units[n] for n in used)], wanted.units)
-    scale, *scales = scales_of([along, *taken], ["XUNITS", *(f"channel {names[n]!r}" for n in used)], False)
+    timed = kind_of_unit(along or "") == "time"
+    scale, *scales = scales_of([along, *taken], ["XUNITS", *(f"channel {names[n]!r}" for n in used)], timed)
     start = _number(words.get("XSTART", "0"), "XSTART")
     values = _text(body, count, below) if STORED[key] is None else _binary(path, count, STORED[key])
     if samples >= 0 and len(values) != samples:
@@ -86,6 +87,7 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
         source=words.get("TITLE", "").strip(),
         place=lambda row: f"sample {row + 1}",
         same_across=len(used) == 1,
+        timed="XUNITS" if timed else "",
     )
 
 

@@ -391,8 +391,10 @@ def _is_footer(fields: Sequence[str], text: str, table: Table) -> bool:
     """Whether a line below a table begins with a word where rows have a number, or is a sentence."""
     if all(map(WRITING.ruled.fullmatch, fields)):
         return True
-    words = [field for field in fields if field and not is_missing(field)]
-    if not is_number(fields[0]) and words and WRITING.footer.fullmatch(words[0]):
+    # What stands in a column of texts is no word where rows have a number.
+    own = [field for n, field in enumerate(fields) if n not in table.texts or len(fields) == 1]
+    words = [field for field in own if field and not is_missing(field)]
+    if own and not is_number(own[0]) and words and WRITING.footer.fullmatch(words[0]):
         return True
     # A row that is cut short holds no words, unless some of its columns do.
     said = [WRITING.word.fullmatch(word) is not None for word in text.split() if not is_missing(word)]

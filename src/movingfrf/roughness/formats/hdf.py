@@ -18,7 +18,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.matlab_file import UNPACKING
 from movingfrf._basics.undoing import scratch
 from movingfrf.roughness.formats.apart import taken_apart
-from movingfrf.roughness.formats.arrays import Array
+from movingfrf.roughness.formats.choice import Array
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 

@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from movingfrf._basics.checks import option
-from movingfrf.roughness.formats.base import unit_in
 from movingfrf.roughness.formats.fields import WRITING, Line, Table, grouped, is_number, split
-from movingfrf.roughness.formats.roles import VOCABULARY, Head, head, kind_of_unit
+from movingfrf.roughness.formats.roles import VOCABULARY, Head, head, kind_of_unit, unit_in
 
 
 class Columns(NamedTuple):
@@ -19,6 +18,8 @@ class Columns(NamedTuple):
     heads: list[Head]  # what names and units say
     lines: int  # lines of names and units
     skipped: list[Line]  # lines above them that are none
+    # Units of the station and of elevations that stand elsewhere above the table; None where there are none.
+    declared: tuple[str | None, str | None] = (None, None)
 
     @property
     def units(self) -> list[str | None]:
@@ -32,6 +33,7 @@ class _Row(NamedTuple):
     line: Line
     fields: list[str]
     comment: bool
+    text: str  # without the sign of a comment
 
 
 def columns_of(table: Table) -> Columns:
@@ -75,7 +77,9 @@ def columns_of(table: Table) -> Columns:
             f"line {named.line.number}: {len(named.fields)} names for {table.width} columns separated by "
             f"{table.said}, got {named.line.text[:60]!r}"
         )
-    return _columns(named.fields if named else [], units, table.width, [row.line for row in above])
+    found = _columns(named.fields if named else [], units, table.width, [row.line for row in above])
+    others = [_row(line, table) for line in table.above if named is None or line is not named.line]
+    return _declared(found, [row.text for row in others])
 
 
 def _columns(names: list[str], units: list[str] | None, count: int, skipped: list[Line]) -> Columns:
@@ -89,12 +93,48 @@ def _columns(names: list[str], units: list[str] | None, count: int, skipped: lis
     return Columns([" ".join(name.split()) for name in names], found, lines, skipped)
 
 
+def _declared(columns: Columns, texts: Sequence[str]) -> Columns:
+    """Take in units that lines above a table tell: of each column, of station and elevations, or by name."""
+    along: str | None = None
+    up: str | None = None
+    heads = columns.heads
+    for text in texts:
+        pieces = [piece for piece in re.split(r"[,;\t]|\s{2,}|\band\b|\bund\b|\bover\b", text) if piece.strip()]
+        bare = [re.sub(r"^.*\bunits?\b\W*|[\[\]()\s]", "", piece, flags=re.IGNORECASE) for piece in pieces]
+        kinds = [kind_of_unit(unit) for unit in bare]
+        if "length" in kinds and "unknown" not in kinds and len(bare) > 1:
+            if len(bare) == len(heads):
+                told = zip(heads, bare, strict=True)
+                heads = [each if each.unit else _with_unit(each, unit) for each, unit in told]
+            elif len(bare) == 2:
+                along, up = bare
+            continue
+        for role, unit in filter(None, map(_told, pieces if any(map(_told, pieces)) else [text])):
+            along, up = (unit, up) if role == "station" else (along, unit)
+    return columns._replace(heads=heads, declared=(along, up))
+
+
+def _with_unit(each: Head, unit: str) -> Head:
+    kind = kind_of_unit(unit)
+    return Head("time" if kind == "time" else "other" if kind == "other" else each.role, unit)
+
+
+def _told(text: str) -> tuple[str, str] | None:
+    """Find what a remark says of a unit, `Elevation: mm`, `distance in metres`: of the station or of elevations."""
+    text = re.sub(r"\bcolumn \d+\b", "", text, flags=re.IGNORECASE).strip()
+    found = re.search(r"(?:[\[(]|\bin\s|[:=,;\t])\s*([^\W\d_]+)[\])]?$", text)
+    if found is None or re.search(r"\d", text) or kind_of_unit(found[1]) != "length":
+        return None
+    role = head(re.sub(r"\bunits?\b", "", text[: found.start()], flags=re.IGNORECASE)).role
+    return (role, found[1]) if role in ("station", "elevation") else None
+
+
 def _row(line: Line, table: Table) -> _Row:
     text = line.text.strip()
     comment = text[:1] in WRITING.signs if table.separator != ";" or text[:1] != ";" else False
     if comment:
         text = text.lstrip(WRITING.signs).strip()
-    return _Row(line, _names(text, table), comment)
+    return _Row(line, _names(text, table), comment, text)
 
 
 def _names(text: str, table: Table) -> list[str]:

@@ -10,6 +10,7 @@ from movingfrf._basics import matlab_file
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import arrays, hdf
 from movingfrf.roughness.formats.base import Format, RawProfile, Wanted, bytes_of
+from movingfrf.roughness.formats.choice import Array
 from movingfrf.roughness.profile import Profile
 
 
@@ -23,10 +24,9 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
             inside = {name.replace("/", "."): array for name, array in content.arrays.items()}
             return arrays.raw_profile(inside, wanted, "MATLAB 7.3 file", content.unread)
     found = matlab_file.arrays_and_texts(data)
-    numbers = {
-        name: arrays.Array(stored.shape, stored.load) for name, stored in (found.numbers | found.fields).items()
-    }
-    return arrays.raw_profile(numbers, wanted, "MATLAB file", found.unread)
+    numbers = {name: Array(stored.shape, stored.load) for name, stored in (found.numbers | found.fields).items()}
+    texts = {name: " ".join(load()) for name, load in found.texts.items() if "unit" in name.lower()}
+    return arrays.raw_profile(numbers, wanted, "MATLAB file", found.unread, texts)
 
 
 def made(profile: Profile, encoding: str = "") -> dict[str, Content]:

@@ -15,6 +15,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.output import Content
 from movingfrf.roughness.formats import arrays
 from movingfrf.roughness.formats.base import Format, RawProfile, Wanted, bytes_of
+from movingfrf.roughness.formats.choice import Array
 from movingfrf.roughness.profile import Profile
 
 
@@ -22,12 +23,13 @@ def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read distance and elevation, or the arrays that are named, and where they come from."""
     stored = numpy_file.stored_arrays(_packed(bytes_of(path)))
     numbers = {
-        name: arrays.Array(each.shape, partial(_floats, each))
+        name: Array(each.shape, partial(_floats, each))
         for name, each in stored.items()
         if each.kind in tuple("fiu")
     }
     unread = {name: "no plain array of real numbers" for name, each in stored.items() if each.kind in ("", "c")}
-    found = arrays.raw_profile(numbers, wanted, "NumPy file", unread)
+    texts = {name: _text(each) for name, each in stored.items() if "unit" in name.lower()}
+    found = arrays.raw_profile(numbers, wanted, "NumPy file", unread, texts)
     source, steps = (_text(stored.get(name)) for name in ("source", "steps"))
     return found._replace(source=source, steps=tuple(step for step in steps.split("\n") if step))
 

@@ -10,14 +10,15 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf.roughness.formats.base import METRES, metres, unit_in
+from movingfrf._basics.checks import option
+from movingfrf.roughness.formats.base import METRES, length_of, metres
 
-Role = Literal["station", "elevation", "across", "time", "counter", "other", "unknown"]
+Role = Literal["station", "elevation", "across", "time", "counter", "label", "other", "unknown"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Vocabulary:
-    """What files are written with."""
+    """What files are written with; in brackets, between what a number is safe."""
 
     # Seconds in one unit of time.
     seconds: Mapping[str, float]
@@ -26,11 +27,23 @@ class Vocabulary:
     # Words of a name that tell its role, in English, German, French, Spanish and Italian: the first in this order
     # that a name has. A compound counts by its end or its beginning, as its language has it.
     words: Sequence[tuple[Role, re.Pattern[str]]]
+    # Words of a station whose unit they are; where that is empty, it may be one or another.
+    implied: Sequence[tuple[re.Pattern[str], str]]
+    # Names of a place on a map, which together are no distance.
+    maps: Sequence[tuple[str, str]]
+    # Units that may stand anywhere in a name: no other word is written like them.
+    plain: frozenset[str]
     # Words that tell one path from another.
     sides: re.Pattern[str]
     force: re.Pattern[str]  # words that name one
     # Units of anything but length and time: quotients, powers, degrees, per cents, forces, voltages.
     other_unit: re.Pattern[str]
+    # Words that a path has, whichever it is.
+    any_path: re.Pattern[str]
+    # Share of the steps of stations that may go down, in damaged rows; elevations do half the time [0.01 to 0.3].
+    falling: float = 0.1
+    # Share of the length by which two stationings of one road may differ: odometers and roundings [1e-3 to 0.05].
+    same: float = 0.01
 
 
 VOCABULARY = Vocabulary(
@@ -59,13 +72,16 @@ VOCABULARY = Vocabulary(
                 r"accel.*|.*beschleunigung|azimuth|heading|bearing|pitch|roll|yaw|curvature|.*kr(ü|ue)mmung|slope|"
                 r"gradient|grade|.*neigung|pente|crossfall|superelevation|cant|(ü|ue)berh(ö|oe)hung|gauge|"
                 r"spurweite|twist|rut|ruts|rutting|spurrinne.*|quality|hdop|satellites?|weight|force|load|"
-                r"versines?|chords?|sehne.*|pfeilh(ö|oe)hen?"  # offsets from a chord
+                r"versines?|chords?|sehne.*|pfeilh(ö|oe)hen?|"  # offsets from a chord
+                r"cross|crosslevel|width|breite|.*depth|.*tiefe|thickness|.*dicke|radius|clearance|ride|"
+                r"std|stdev|stddev|sigma|.*accuracy|precision|uncertainty|genauigkeit|tolerance|versatz|humidity|"
+                r"ends?|next|previous"
             ),
         ),
         (
             "elevation",
             re.compile(
-                r"z|h|elev.*|height|heights|.*h(ö|oe)hen?|altitude|alt|ele|level|levels|vertical|uneven.*|"
+                r"z|z[lr]|h|elev.*|height|heights|.*h(ö|oe)hen?|altitude|alt|ele|level|levels|vertical|uneven.*|"
                 r".*unebenheit.*|irregularit.*|alti|hauteur|cota|quota|altura|altezza"
             ),
         ),
@@ -74,7 +90,7 @@ VOCABULARY = Vocabulary(
             "station",
             re.compile(
                 r"x|s|u|dist|distan.*|station|stations|stationing|stationierung|sta|chain.*|mileage|milepost|"
-                r"milepoint|kilomet.*|km|pk|position|pos|abscis.*|progressiv.*|.*weg|.*strecke|odometer|dmi|"
+                r"milepoint|kilomet.*|km|pk|kp|position|pos|abscis.*|progressiv.*|.*weg|.*strecke|odometer|dmi|"
                 r"arclength"
             ),
         ),
@@ -82,7 +98,8 @@ VOCABULARY = Vocabulary(
             "time",
             re.compile(r"t|time|times|timestamp|datetime|date|utc|.*zeit|datum|temps|tiempo|tempo|seconds?|hours?"),
         ),
-        ("elevation", re.compile(r".*profil.*")),  # a profile's distance is none
+        ("elevation", re.compile(r".*profil.*|perfil.*")),  # a profile's distance is none
+        ("other", re.compile(r"alignment")),  # but a vertical one
         (
             "counter",
             re.compile(
@@ -91,15 +108,22 @@ VOCABULARY = Vocabulary(
             ),
         ),
         (
-            "other",  # what tells stretches of road apart, and what is said of a station
+            "label",  # what tells stretches of road apart, and what is said of a station
             re.compile(
                 r"lanes?|fahrstreifen|direction|richtung|section|abschnitt|route|run|year|jahr|flag|valid|status|event|"
                 r"code|remarks?|comments?|notes?|bemerkung.*|kommentar.*"
             ),
         ),
     ),
+    implied=(
+        (re.compile(r"km|kilomet.*|pk|kp"), "km"),
+        (re.compile(r"milepost|milepoint"), "mi"),
+        (re.compile(r"mileage"), ""),
+    ),
+    maps=(("x", "y"), ("east", "north"), ("easting", "northing"), ("rechts", "hoch"), ("e", "n")),
+    plain=frozenset(("mm", "cm", "ft", "um", "µm", "μm", "inches", "мм")),
     sides=re.compile(
-        r"left|right|l|r|links|rechts|gauche|droite?|izquierd[ao]|derech[ao]|sinistr[ao]|destr[ao]|inner|outer|"
+        r"left|right|l|r|links|rechts|gauche|droite?|izquierd[ao]|izq|derech[ao]|der|sinistr[ao]|destr[ao]|inner|outer|"
         r"cent(er|re)|middle|mitte|[a-z]*wp|wheel|path|wheelpath|track|rail|lane|spur"
     ),
     force=re.compile(
@@ -109,6 +133,7 @@ VOCABULARY = Vocabulary(
         r".*[/%°²³^*].*|deg\.?|degrees?(_north|_east)?|rad|c|k|celsius|g|hz|v|mv|n|kn|kg|t|mph|kmh|kph|kmph|knots|"
         r"bar|pa"
     ),
+    any_path=re.compile(r"[a-z]?wp|wheel|path|wheelpath|track|rail|lane|spur"),
 )
 
 
@@ -117,15 +142,6 @@ class Head(NamedTuple):
 
     role: Role
     unit: str | None = None  # as it was written; None where none is stated
-
-
-class Sorted(NamedTuple):
-    """Which of several columns or arrays are what, by number."""
-
-    station: int | None  # None where no name and no unit says so
-    elevations: list[int]
-    time: int | None
-    left: list[int]  # everything else
 
 
 def head(name: str, unit: str = "") -> Head:
@@ -150,27 +166,62 @@ def head(name: str, unit: str = "") -> Head:
     (Head(role='station', unit='ft'), Head(role='elevation', unit='mm'), Head(role='time', unit='ms'), \
 Head(role='unknown', unit=None))
     """
-    words = words_of(re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name))
+    words = words_of(outside(name))
     stated = unit.strip().strip("[]()").strip() or (unit_in(name) or "").strip()
-    if not stated and len(words) > 1 and _ends_in_unit(words):
-        stated = words.pop()
+    if kind_of_unit(stated) == "unknown" and (within := _unit_among(words)) is not None:
+        stated = words.pop(within)
     if stated in ("-", "1"):  # what has no dimension
         stated = ""
     kind = kind_of_unit(stated)
     role = _role(words)
     if kind in ("time", "other") and role != "counter":
         role = kind
-    elif role == "time" and kind == "length":
+    elif kind == "length" and role in ("time", "label"):
         role = "unknown"
-    if not stated and words[-1:] == ["km"] and role == "station":
-        stated = "km"  # the unit is the name
+    if not stated and role == "station":
+        stated = implied_unit(name) or ""
     return Head(role, stated or None)
+
+
+def implied_unit(name: str) -> str | None:
+    """Find the unit that a station's name says, as kilometres do; empty where it could be one or another."""
+    words = words_of(outside(name))
+    told = (unit for pattern, unit in VOCABULARY.implied if any(map(pattern.fullmatch, words)))
+    return next(told, None)
+
+
+def require_unit(name: str) -> None:
+    """Refuse a station whose name leaves open what it is measured in.
+
+    Raises
+    ------
+    ValueError
+        If it is one of those that may be miles, kilometres or metres.
+    """
+    if implied_unit(name) == "":
+        raise ValueError(f"{name[:40]!r} may be in miles, kilometres or metres: {option('units')} says which")
+
+
+def unit_in(name: str) -> str | None:
+    """Find the unit in a column's name: of what stands in brackets, square ones first, what is a unit.
+
+    Examples
+    --------
+    >>> unit_in("Elevation (filtered) (mm)"), unit_in("z(x) (in, raw)"), unit_in("x [furlong]"), unit_in("x")
+    ('mm', 'in', 'furlong', None)
+    """
+    found = re.findall(r"\[([^\]]*)\]", name) + re.findall(r"\(([^)]*)\)", name)
+    units = [text for text in found if kind_of_unit(text) != "unknown"]
+    # A unit may begin what is said, though `in` may be no inch.
+    begun = [re.split(r"[,;]|(?<!\bin)\s", text.strip())[0] for text in found]
+    units += [text for text in begun if length_of(text) is not None]
+    return next(iter([*units, *found]), None)
 
 
 def kind_of_unit(unit: str) -> Literal["length", "time", "other", "unknown"]:
     """Tell what is measured in a unit; unknown where it is none, or one that nobody knows."""
     word = unit.strip().lower()
-    if word in METRES:
+    if length_of(word) is not None:
         return "length"
     if word in VOCABULARY.seconds:
         return "time"
@@ -217,6 +268,11 @@ def words_of(name: str) -> list[str]:
     return [word.lower() for word in re.findall(r"[^\W\d_]+", _split(name))]
 
 
+def outside(name: str) -> str:
+    """Leave out of a name what stands in brackets."""
+    return re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name)
+
+
 def _split(name: str) -> str:
     """Put a blank before every capital letter that begins a word."""
     return re.sub(r"([a-zäöü])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3 \2\4", name)
@@ -230,51 +286,19 @@ def rest_of(name: str) -> str:
     >>> rest_of("x1"), rest_of("Elevation_left [mm]"), rest_of("distance")
     ('1', 'left', '')
     """
-    found = re.findall(r"[^\W\d_]+|\d+", _split(re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name)).lower())
-    if len(found) > 1 and _ends_in_unit(found):
-        found.pop()
+    found = re.findall(r"[^\W\d_]+|\d+", _split(outside(name)).lower())
+    if (within := _unit_among(found)) is not None:
+        found.pop(within)
     told = [pattern for role, pattern in VOCABULARY.words if role in ("station", "elevation")]
     return " ".join(word for word in found if not any(pattern.fullmatch(word) for pattern in told))
 
 
 def names_a_path(name: str) -> bool:
     """Tell whether a name does nothing but tell one path from another."""
-    words = words_of(name)
+    words = words_of(outside(name))
+    if (within := _unit_among(words)) is not None:
+        words.pop(within)
     return bool(words) and all(map(VOCABULARY.sides.fullmatch, words))
-
-
-def sort_out(heads: Sequence[Head]) -> Sorted:
-    """Say which columns or arrays are what, as far as names and units tell.
-
-    The station is the first that is called so. Elevations are all that are called so and all that nothing but a
-    unit of length describes; where no name says elevation, everything that no name describes.
-
-    Parameters
-    ----------
-    heads : sequence of Head
-        What `head` says of each.
-
-    Returns
-    -------
-    Sorted
-        Numbers, counted from 0.
-
-    Examples
-    --------
-    >>> sort_out([head(name) for name in ("", "time [s]", "left [mm]", "distance [m]", "speed [km/h]")])
-    Sorted(station=3, elevations=[0, 2], time=1, left=[4])
-    """
-    roles = [each.role for each in heads]
-    station = roles.index("station") if "station" in roles else None
-    time = roles.index("time") if "time" in roles else None
-    called = "elevation" in roles
-    elevations = [
-        n
-        for n, (role, unit) in enumerate(heads)
-        if role == "elevation" or (role == "unknown" and (not called or kind_of_unit(unit or "") == "length"))
-    ]
-    left = [n for n in range(len(heads)) if n not in (station, time) and n not in elevations]
-    return Sorted(station, elevations, time, left)
 
 
 def counts(values: FloatArray) -> bool:
@@ -294,9 +318,22 @@ def counts(values: FloatArray) -> bool:
 
 
 def _role(words: Sequence[str]) -> Role:
+    if words[-1:] and words[-1] in ("id", "no", "nr", "nummer", "number", "index"):  # of a station
+        return "counter"
+    if list(words) in (["to"], ["bis"]):  # where a stretch ends
+        return "other"
     return next((role for role, told in VOCABULARY.words if any(map(told.fullmatch, words))), "unknown")
 
 
-def _ends_in_unit(words: Sequence[str]) -> bool:
-    """Tell a unit that is the last word: one of length, or one of time behind a word for time."""
-    return words[-1] in METRES or (words[-1] in VOCABULARY.seconds and _role(words[:-1]) == "time")
+def _unit_among(words: Sequence[str]) -> int | None:
+    """Find a unit among the words of a name.
+
+    It is the last, a length, or a time behind a word for time; or a plain one, wherever it stands. A name that is
+    nothing but a unit of length (`m`) counts.
+    """
+    last = len(words) - 1
+    if last >= 0 and (words[last] in METRES and (last or _role(words) == "unknown")):
+        return last
+    if last > 0 and words[last] in VOCABULARY.seconds and _role(words[:last]) == "time":
+        return last
+    return next((n for n, word in enumerate(words) if word in VOCABULARY.plain), None)

@@ -33,9 +33,14 @@ class Sheet(NamedTuple):
 
 def read(path: Path, wanted: Wanted) -> RawProfile:
     """Read the sheet that holds a table; where several do, the one that is asked for."""
-    found = [_sheet(name, text, wanted) for name, text in _texts(path)]
+    texts = _texts(path)
+    found = [_sheet(name, text, wanted._replace(recording=None)) for name, text in texts]
     if not found:
         raise ValueError("holds no sheets")
+    if wanted.recording is not None and wanted.recording not in [sheet.name for sheet in found]:
+        inside = [sheet.raw for sheet in (_sheet(*each, wanted) for each in texts) if sheet.raw]
+        if len(inside) == 1:  # one of several in a sheet
+            return inside[0]
     asked = [sheet for sheet in found if sheet.name == wanted.recording]
     tables = asked or [sheet for sheet in found if sheet.raw] or found[:1]
     recordings = [_recording(sheet) for sheet in tables]
