@@ -282,7 +282,7 @@ def test_comfort_of_a_result():
         (lambda: mf.weighted([0.0, np.inf], 1e-3), "acceleration must be finite"),
         (lambda: mf.weighted([0.0, 1.0], 0.0), "time_step must be positive"),
         (lambda: mf.running_rms([1.0], 1e-3, 0.0), "window must be positive"),
-        (lambda: mf.running_rms([1.0] * 9, 1e-3, since=1.0), "since must lie within the record"),
+        (lambda: mf.running_rms([1.0] * 9, 1e-3, since=1.0), "since must leave at least two samples"),
         (lambda: mf.vibration_dose([1.0], -1.0), "time_step must be positive"),
         (lambda: mf.comfort_reactions(-1.0), "rms must not be negative"),
         (lambda: mf.vibration_total([[1.0]]), "rms must have shape"),
