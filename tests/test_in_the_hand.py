@@ -277,7 +277,10 @@ MISTAKEN = {
     "vehicle and spectrum swapped": (lambda: mf.random_response(TRACK, ISO, CAR, speed=1.0), "and then profile or"),
     "spectrum and guideway swapped": (lambda: mf.random_response(ISO, CAR, TRACK, speed=1.0), "the order is gui"),
     "a result for a profile": (lambda: mf.iri(RESULT), "of kind 'coupled'; a result does not hold its profile"),
-    "a result to prepare": (lambda: mf.resampled(RESULT, 0.5), "of kind 'coupled'; a result does not hold its profile"),
+    "a result to prepare": (
+        lambda: mf.resampled(RESULT, 0.5),
+        "of kind 'coupled'; a result does not hold its profile",
+    ),
     "a result to describe": (lambda: mf.describe_profile(RESULT), "a result does not hold its profile"),
     "histories for a history": (
         lambda: mf.rainflow(RESULT.contact_force),

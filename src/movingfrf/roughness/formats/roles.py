@@ -96,7 +96,9 @@ VOCABULARY = Vocabulary(
         ),
         (
             "time",
-            re.compile(r"t|time|times|timestamp|datetime|date|utc|.*zeit|datum|temps|tiempo|tempo|seconds?|hours?"),
+            re.compile(
+                r"t|time|times|timestamp|elapsed|datetime|date|utc|.*zeit|datum|temps|tiempo|tempo|seconds?|hours?"
+            ),
         ),
         ("elevation", re.compile(r".*profil.*|perfil.*")),  # a profile's distance is none
         ("other", re.compile(r"alignment")),  # but a vertical one
