@@ -61,6 +61,12 @@ FAULTS = [
         "if least * (1 - rounding) <= value",
         "if True or value",
     ),
+    Fault(
+        "sags in silence",
+        "scenarios/unusual.py",
+        "(held / (4 * bending)) ** 0.25",
+        "(held / (4e9 * bending)) ** 0.25",
+    ),
     Fault("convoy called long", "scenarios/unusual.py", "np.ptp(places[part.contacts])", "np.ptp(places)"),
     Fault("absurd in silence", "scenarios/scenario.py", "warned(self.case.unusual))", "[])"),
     Fault("sentences broken anywhere", "commands/console.py", "break_long_words=False", "break_long_words=True"),

@@ -54,6 +54,9 @@ class Usual:
     beam_mass: Range = (1.0, 1e5)  # of a beam or a layer [kg/m; a contact wire, a wide bridge]
     foundation: Range = (9e3, 2e10)  # [N/m²; water under a metre of ice, the stiffest of pads]
     bending_length: Range = (0.1, 30.0)  # (4 B/k)^¼ of a beam on springs [m; rails on stiff pads, ice]
+    # Of the beam under the heaviest contact at rest [m; a truck on soft soil 8 mm, a locomotive 5], if not afloat.
+    sag: Range = (1e-7, 0.025)
+    floating: float = 5e4  # stiffness below which a foundation is water [N/m²; 9810 for a metre of width]
     foundation_damping: Range = (3e-4, 20.0)  # over the critical one, 2 √(k m), where there is any
     slope: Range = (0.0, 1.5)  # root mean square of a profile's, about its mean [class H has 0.8, class A 0.006]
     force: Range = (0.0, 5e6)  # prescribed [N; a heavy aircraft's gear]
@@ -100,7 +103,7 @@ def unusual(
     """
     found = [*_of_journey(guideway, journey, vehicle), *_of_guideway(guideway)]
     if vehicle is not None:
-        found += _of_vehicle(vehicle)
+        found += [*_of_sag(guideway, vehicle), *_of_vehicle(vehicle)]
     if profile is not None:
         found += _of_profile(profile)
     if forces is not None:
@@ -182,6 +185,29 @@ def _of_guideway(guideway: object) -> Iterator[str]:
             "1",
             "is it in N s/m²?",
         )
+
+
+def _of_sag(guideway: object, vehicle: Vehicle) -> Iterator[str]:
+    """Say whether a beam gives way by what none gives way: one slip by a thousand, of whatever stiffness."""
+    bending = getattr(getattr(guideway, "beam", None), "bending_stiffness", None)
+    if not isinstance(guideway, Track) or bending is None:
+        return
+    given_way = _compliance(guideway.foundation)
+    if not 0 < given_way < 1.0 / USUAL.floating:
+        return
+    held = 1.0 / given_way
+    load = float(vehicle.static_loads.max())
+    sag = load / (2 * held) * (held / (4 * bending)) ** 0.25
+    words = f"the sag under {number(load / 1e3, 3)} kN at rest"
+    yield from _outside(words, sag, USUAL.sag, "m", "are foundation and beam in N/m² and N m²?")
+
+
+def _compliance(part: object) -> float:
+    """Give way at rest, per force and length [m²/N]; 0 where that is not known."""
+    if isinstance(part, OnMass):
+        return _compliance(part.above) + _compliance(part.below)
+    stiffness = float(getattr(part, "stiffness", 0.0))
+    return 1.0 / stiffness if stiffness else 0.0
 
 
 def _of_foundation(part: object) -> Iterator[str]:
