@@ -6,6 +6,10 @@ from movingfrf._basics.ending import heed, is_command
 
 if is_command():
     heed()  # before anything else is loaded: from here on an interrupt ends in a line
+    import os
+
+    # No command gains by a second thread of BLAS, which takes the processor's time while it waits for the first.
+    os.environ |= {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
 from importlib import import_module
 from typing import Any

@@ -28,7 +28,7 @@ FAULTS = [
         "error.filename == StandardStream.OUTPUT and placed",
         "False",
     ),
-    Fault("status of Python's own end", "commands/main.py", "            stream.flush()", "            pass"),
+    Fault("end before all is said", "commands/main.py", "            stream.flush()", "            pass"),
     Fault(
         "scenario in the letters of the console",
         "commands/console.py",
