@@ -47,15 +47,17 @@ class Piecewise(Value):
         """
         places = np.asarray(at, dtype=float)
         flat = places.ravel()
-        if flat.size > 1 and (flat[1:] >= flat[:-1]).all():
+        inner = self.x[1:-1]
+        first, last = np.searchsorted(inner, flat[[0, -1]], side="right").tolist() if flat.size else (0, 0)
+        if flat.size > last - first > 0 and (flat[1:] >= flat[:-1]).all():
             # Ascending places are shared out among the pieces: what belongs to a piece is repeated, not picked.
-            before = np.searchsorted(flat, self.x[1:-1], side="left")
+            before = np.searchsorted(flat, inner[first:last], side="left")
             pieces = np.diff(before, prepend=0, append=flat.size)
 
             def each(values: FloatArray) -> FloatArray:
-                return np.repeat(values, pieces, axis=-1)
+                return np.repeat(values[..., first : last + 1], pieces, axis=-1)
         else:
-            place = np.searchsorted(self.x[1:-1], flat, side="right")
+            place = np.searchsorted(inner, flat, side="right")
 
             def each(values: FloatArray) -> FloatArray:
                 return values[..., place]
