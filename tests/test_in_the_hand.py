@@ -522,3 +522,12 @@ def test_vibrations_comfort_and_measures_are_shown_in_few_digits():
     assert repr(many).splitlines()[-1] == f"… {len(many) - many.most} more"
     assert repr(many[:0]) == "[]"
     assert repr(pickle.loads(pickle.dumps(found))) == repr(found)
+
+
+@pytest.mark.parametrize(("coach", "length"), [("velaro_coach", 24.775), ("shinkansen_coach", 25.0)])
+def test_a_train_is_spaced_as_coaches_are(coach, length):
+    """Lengths over couplers: J. Goicolea; Y. S. Wu and Y. B. Yang, as in the catalogue."""
+    axles = mf.train(mf.catalogue(coach), 3).positions
+    assert axles[0] - axles[4] == pytest.approx(length, rel=0.01)
+    with pytest.raises(ValueError, match="spacing must be given"):
+        mf.train(mf.catalogue("golden_car"), 2)

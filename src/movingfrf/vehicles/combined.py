@@ -92,7 +92,7 @@ def convoy(
     )
 
 
-def train(car: Vehicle, count: int, *, spacing: float) -> Vehicle:
+def train(car: Vehicle, count: int, *, spacing: float | None = None) -> Vehicle:
     """Repeat a vehicle: a train of equal cars.
 
     Parameters
@@ -101,8 +101,10 @@ def train(car: Vehicle, count: int, *, spacing: float) -> Vehicle:
         One car.
     count : int
         Number of cars.
-    spacing : float
-        Between the reference points of successive cars [m]: the length of a car over its couplers.
+    spacing : float, optional
+        Between the reference points of successive cars [m]: the length of a car over its couplers. By default from
+        the first axle to the last and twice the shortest distance between two axles, as coaches have it: 25 m for
+        a Shinkansen's, 24.9 m for an ICE 3's of 24.8 m.
 
     Returns
     -------
@@ -112,14 +114,30 @@ def train(car: Vehicle, count: int, *, spacing: float) -> Vehicle:
     Raises
     ------
     ValueError
-        If the number is not positive or the cars would overlap.
+        If the number is not positive, the cars would overlap, or a car with a single axle has no spacing.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> coach = mf.catalogue("shinkansen_coach")
+    >>> axles = train(coach, 8).positions
+    >>> round(float(axles[0] - axles[4]), 3)
+    25.0
     """
     with checking() as check:
         check_vehicle(check, car, "car")
         count = check.whole("count", count, least=1)
-        spacing = check.positive("spacing", spacing, "m")
+        if spacing is not None:
+            spacing = check.positive("spacing", spacing, "m")
+        elif not check.faults:
+            axles = np.unique(car.positions)
+            if axles.size < 2:
+                check.refuse("spacing", "must be given [m]: of one axle no length of a car follows")
+            else:
+                spacing = float(np.ptp(axles) + 2.0 * np.diff(axles).min())
     # Two dozen square matrices of all degrees of freedom, while they are joined and checked.
     require_memory(200.0 * (count * len(car.dof_names)) ** 2, f"a train of {wording.count(count, 'car')}")
+    assert spacing is not None
     return convoy([car] * count, spacing=spacing)
 
 
