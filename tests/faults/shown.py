@@ -149,12 +149,6 @@ FAULTS = [
         "DATASET_58.other_nodes) + place.number",
         "DATASET_58.other_nodes)",
     ),
-    Fault(
-        "time of day in MATLAB's head",
-        "results/exports/matlab.py",
-        "return said + file.getvalue()[len(said) :]",
-        "return file.getvalue()",
-    ),
     Fault("names alike in MATLAB", "results/exports/matlab.py", "while valid in others:", "while False:"),
     Fault(
         "variable lost to a structure", "results/exports/matlab.py", 'taken=(*content, "settings"))', "taken=())"

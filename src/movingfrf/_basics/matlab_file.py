@@ -316,13 +316,15 @@ def recognised(head: bytes) -> bool:
     return head.startswith(b"MATLAB ") and head[126:128] in (b"IM", b"MI")
 
 
-def as_mat(arrays: Mapping[str, Any]) -> bytes:
-    """Make a file of arrays and texts.
+def as_mat(arrays: Mapping[str, Any], *, packed: bool = False) -> bytes:
+    """Make a file of arrays, texts and structures, equal for equal content.
 
     Parameters
     ----------
-    arrays : dict of str to array_like
+    arrays : dict of str to array_like or dict
         By name.
+    packed : bool
+        Whether to compress it.
 
     Returns
     -------
@@ -332,7 +334,7 @@ def as_mat(arrays: Mapping[str, Any]) -> bytes:
     from scipy.io import savemat
 
     made = io.BytesIO()
-    savemat(made, arrays, oned_as="column")
+    savemat(made, arrays, do_compression=packed, oned_as="column", long_field_names=True)
     made.seek(0)
     made.write(b"MATLAB 5.0 MAT-file, written by movingfrf".ljust(116))  # in place of text that tells the time
     return made.getvalue()

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from movingfrf._basics.matlab_file import LEVEL_5
-from movingfrf._basics.version import VERSION
+from movingfrf._basics.matlab_file import LEVEL_5, as_mat
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -24,8 +22,6 @@ def made(result: xr.Dataset) -> bytes:
     `settings`, how the result was made. Texts, as names of degrees of freedom, are cells. The response in the finer
     steps in which it was solved is there too, as `solved_time` and so on, where the result keeps it.
     """
-    from scipy.io import savemat
-
     variables = {str(name): variable for name, variable in result.variables.items()}
     content: dict[str, Any] = {
         "units": {
@@ -39,11 +35,7 @@ def made(result: xr.Dataset) -> bytes:
     content = {which: {names[name]: said for name, said in texts.items()} for which, texts in content.items()}
     content["settings"] = {valid: result.attrs[name] for name, valid in valid_names(map(str, result.attrs)).items()}
     content |= {names[name]: _array(variable.values) for name, variable in variables.items()}
-    file = io.BytesIO()
-    savemat(file, content, do_compression=True, oned_as="column", long_field_names=True)
-    # What SciPy says at the head holds the time of day, and equal results have equal bytes.
-    said = f"MATLAB 5.0 MAT-file, written by movingfrf {VERSION}".encode().ljust(LEVEL_5.header - 12)
-    return said + file.getvalue()[len(said) :]
+    return as_mat(content, packed=True)
 
 
 def _array(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
