@@ -161,14 +161,14 @@ def test_an_endless_road_is_stepped_as_it_is_compared():
         assert result.attrs["method"] == method
         assert (result.attrs["scenario"], result.attrs["road"]) == (exact.attrs["scenario"], exact.attrs["road"])
         case = Case(scenario=scenario, time_step=1e-3, element=0.25)
-        assert result.drop_attrs().identical(FOR_VEHICLE[method].prepare(case)().drop_attrs())
+        assert result.drop_attrs().identical(FOR_VEHICLE[method].prepare(case)(case.given).drop_attrs())
         assert apart(result.contact_force.values, exact.contact_force.values) < 1e-3
         # Room for a second of run-in, and for 14 lengths over which the road bends.
         assert result.attrs["road_first"] == pytest.approx(-2.05 - 10.0 - 14 * (4 * 1.573e7 / 8e6) ** 0.25, abs=0.3)
     loads = parse_scenario(LOADS)
     result = loads.run(method="newmark")
     case = Case(scenario=loads, time_step=1e-3, element=0.25)
-    assert result.drop_attrs().identical(FOR_LOADS["newmark"].prepare(case)().drop_attrs())
+    assert result.drop_attrs().identical(FOR_LOADS["newmark"].prepare(case)(case.given).drop_attrs())
     assert apart(result.deflection.values, loads.run().deflection.values) < 2e-3
 
 

@@ -129,12 +129,12 @@ class Drive(Value):
         method = _known_method(method, (MOVING_FRF, *COUPLED_BY), "a vehicle", self.guideway)
         if method in COUPLED_BY:
             result = coupled(
-                (self.guideway, self.vehicle, self.road.profile),
+                (self.guideway, self.vehicle),
                 self.journey,
                 Division(element=elements(self.guideway)[-1]),
                 iteration=COUPLED_BY[method],
                 progress=progress,
-            )()
+            )(self.road.profile)
         else:
             endless = require_endless(self.guideway, instead="cdfm")
             result = driven(endless, self.vehicle, self.road.profile, self.journey, progress=progress)
@@ -216,11 +216,11 @@ class Passage(Value):
         if method == NEWMARK:
             return loaded(
                 self.guideway,
-                (self.forces, self.loads.positions, self.loads.observe),
+                (self.loads.positions, self.loads.observe),
                 self.journey,
                 Division(element=elements(self.guideway)[-1]),
                 progress=progress,
-            )()
+            )(self.forces)
         guideway = require_endless(self.guideway, instead=NEWMARK)
         require_guideway(guideway)
         return carried(

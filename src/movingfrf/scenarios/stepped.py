@@ -20,7 +20,7 @@ from movingfrf.stepping.coupled import prepared_journey
 from movingfrf.stepping.exchange import SOLVED, Iteration
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.finite_track import bending_length, finite_track
-from movingfrf.stepping.moving_loads import newmark_loads
+from movingfrf.stepping.moving_loads import prepared_passage
 from movingfrf.stepping.requirements import require_on_guideway
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
@@ -28,8 +28,6 @@ from movingfrf.vehicles.vehicle import Vehicle
 if TYPE_CHECKING:
     import xarray as xr
 
-
-Solve = Callable[[], "xr.Dataset"]
 
 # How `sim` finds contact forces unless told otherwise.
 EXCHANGED = Iteration(1e-10)
@@ -198,7 +196,7 @@ def divisible(guideway: Guideway) -> Track:
 
 
 def coupled(
-    parts: tuple[Guideway | FiniteGuideway, Vehicle, Profile],
+    parts: tuple[Guideway | FiniteGuideway, Vehicle],
     journey: Journey,
     division: Division,
     *,
@@ -206,12 +204,12 @@ def coupled(
     run_in: float | None = None,
     iteration: Iteration = SOLVED,
     progress: Progress = silent,
-) -> Solve:
+) -> Callable[[Profile], xr.Dataset]:
     """Prepare a vehicle's journey, stepped together with the road.
 
     Parameters
     ----------
-    parts : tuple of Guideway or FiniteGuideway, Vehicle and Profile
+    parts : tuple of Guideway or FiniteGuideway, and Vehicle
         Who travels on what.
     journey : Journey
         How.
@@ -230,13 +228,13 @@ def coupled(
     Returns
     -------
     callable
-        Steps through the journey and returns the result of `cdfm` or `sim`.
+        Steps through the journey over a profile and returns the result of `cdfm` or `sim`.
     """
-    guideway, vehicle, profile = parts
+    guideway, vehicle = parts
     before = run_in_of(guideway, vehicle.positions, journey) if run_in is None else run_in
     return prepared_journey(
         journey,
-        (stretch(guideway, vehicle.positions, journey, division, before), vehicle, profile),
+        (stretch(guideway, vehicle.positions, journey, division, before), vehicle),
         iteration=iteration,
         superposed=superposed and not stands_still(guideway),
         run_in=before,
@@ -246,20 +244,20 @@ def coupled(
 
 def loaded(
     guideway: Guideway | FiniteGuideway,
-    forces: tuple[FloatArray, FloatArray, FloatArray],
+    places: tuple[FloatArray, FloatArray],
     journey: Journey,
     division: Division,
     *,
     progress: Progress = silent,
-) -> Solve:
+) -> Callable[[FloatArray], xr.Dataset]:
     """Prepare the passage of prescribed loads along a road.
 
     Parameters
     ----------
     guideway : Guideway or FiniteGuideway
         The road.
-    forces : tuple of ndarray
-        Forces, shape (time, load) [N], where they act, and where the deflection is wanted [m].
+    places : tuple of ndarray
+        Where forces act, and where the deflection is wanted [m].
     journey : Journey
         How they travel.
     division : Division
@@ -270,17 +268,16 @@ def loaded(
     Returns
     -------
     callable
-        Steps through the passage and returns the result of `newmark_loads`.
+        Steps through the passage of forces, shape (time, load) [N], and returns the result of `newmark_loads`.
     """
-    force, positions, observe = forces
-    road = stretch(guideway, np.concatenate([positions, observe]), journey, division)
-    return lambda: newmark_loads(
-        road,
-        force,
+    positions, observe = places
+    return prepared_passage(
+        stretch(guideway, np.concatenate(places), journey, division),
         positions,
+        observe,
         speed=journey.speed,
         time_step=journey.time_step,
-        observe=observe,
+        samples=journey.samples,
         progress=progress,
     )
 

@@ -156,16 +156,17 @@ def cdfm(
     >>> dict(result.sizes)
     {'time': 500, 'contact': 1, 'dof': 2}
     """
+    require_profile(profile)
     return prepared_journey(
         Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend),
-        (road, vehicle, profile),
+        (road, vehicle),
         scheme=scheme,
         superposed=superposed,
         run_in=run_in,
         observe=observe,
         compiled=compiled,
         progress=progress,
-    )()
+    )(profile)
 
 
 def sim(
@@ -252,9 +253,10 @@ def sim(
     with checking() as check:
         tolerance = check.positive("tolerance", tolerance, "1")
         iterations = check.whole("iterations", iterations, least=1)
+    require_profile(profile)
     return prepared_journey(
         Journey(speed=speed, duration=duration, start=start, time_step=time_step, blend=blend),
-        (road, vehicle, profile),
+        (road, vehicle),
         scheme=scheme,
         iteration=Iteration(tolerance, iterations),
         superposed=superposed,
@@ -262,12 +264,12 @@ def sim(
         observe=observe,
         compiled=compiled,
         progress=progress,
-    )()
+    )(profile)
 
 
 def prepared_journey(
     journey: Journey,
-    parts: tuple[FiniteGuideway, Vehicle, Profile],
+    parts: tuple[FiniteGuideway, Vehicle],
     *,
     scheme: str | Scheme = "average_acceleration",
     iteration: Iteration = SOLVED,
@@ -276,14 +278,16 @@ def prepared_journey(
     observe: ArrayLike = (),
     compiled: bool | None = None,
     progress: Progress = silent,
-) -> Callable[[], xr.Dataset]:
-    """Check and prepare a journey: everything that comes before its first step.
+) -> Callable[[Profile], xr.Dataset]:
+    """Check and prepare a journey: all that is the same whatever the profile, done once.
+
+    Matrices and their factorisation, the contacts' rows of the inverse, and the smooth run-in.
 
     Parameters
     ----------
     journey : Journey
         How the vehicle travels.
-    parts : tuple of FiniteGuideway, Vehicle and Profile
+    parts : tuple of FiniteGuideway and Vehicle
         Who travels on what.
     scheme, superposed, run_in, observe, compiled, progress
         As for `cdfm`.
@@ -293,12 +297,12 @@ def prepared_journey(
     Returns
     -------
     callable
-        Steps through the journey and returns the result of `cdfm` or `sim`.
+        Steps through the journey over a profile, one after another if there are several, and returns the result of
+        `cdfm` or `sim`.
     """
-    guideway, vehicle, profile = parts
+    guideway, vehicle = parts
     require_kind("road", guideway, FiniteGuideway, "finite road")
     require_vehicle(vehicle)
-    require_profile(profile)
     with checking() as check:
         run_in = check.not_negative("run_in", run_in, "s")
         row = scheme_named(check, scheme)
@@ -342,18 +346,18 @@ def prepared_journey(
         iteration=iteration,
         compiled=compiled,
     )
-    seen = seen_in_time(profile, vehicle, journey)
     run_in_steps = round(run_in / journey.time_step)
-    steady, state = steady_travel(march, vehicle, run_in_steps, progress)
+    steady, settled = steady_travel(march, vehicle, run_in_steps, progress)
     loads = np.zeros((1, positions.size)) if superposed else vehicle.static_loads[None]
-    state = march.at_rest() if superposed else state
-    roughness, rate = seen.roughness, seen.rate
-    march.begun(state, roughness[0], rate[0], loads[0])
     march.prepare()
 
-    def step() -> xr.Dataset:
+    def step(profile: Profile) -> xr.Dataset:
+        seen = seen_in_time(profile, vehicle, journey)
+        roughness, rate = seen.roughness, seen.rate
+        state = march.at_rest() if superposed else settled.copied()
+        march.begun(state, roughness[0], rate[0], loads[0])
         trace = march.run(
-            journey.samples - 1, state.copied(), roughness=roughness, rate=rate, loads=loads, progress=progress
+            journey.samples - 1, state, roughness=roughness, rate=rate, loads=loads, progress=progress
         )
         force, deflection, motion = trace.force, trace.deflection, trace.motion
         if superposed:

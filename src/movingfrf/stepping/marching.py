@@ -166,9 +166,9 @@ class March:
         self.released(state, rows.T @ state.acting)
 
     def prepare(self) -> None:
-        """Factorise now what the first step would otherwise factorise."""
+        """Factorise now what the first step, or its beginning, would otherwise factorise."""
         _ = self._tables if self.uses_compiled else self._solver
-        _ = self.half
+        _ = self.half, self.mass_solver
 
     def run(
         self,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -88,19 +89,63 @@ def newmark_loads(
         at = check.array("positions", positions, "m", (None,))
         forces = check.array("force", force, "N", (None, at.size))
         points = at if observe is None else check.array("observe", observe, "m", (None,))
+        if not check.faults and (len(forces) < 2 or not at.size or not points.size):
+            check.refuse("force", "must have at least two samples, one load and one observation point")
+    return prepared_passage(
+        road,
+        at,
+        points,
+        speed=speed,
+        time_step=time_step,
+        samples=len(forces),
+        start=start,
+        scheme=scheme,
+        compiled=compiled,
+        progress=progress,
+    )(forces)
+
+
+def prepared_passage(
+    road: FiniteGuideway,
+    at: FloatArray,
+    points: FloatArray,
+    *,
+    speed: float,
+    time_step: float,
+    samples: int,
+    start: float = 0.0,
+    scheme: str | Scheme = "average_acceleration",
+    compiled: bool | None = None,
+    progress: Progress = silent,
+) -> Callable[[FloatArray], xr.Dataset]:
+    """Check and prepare a passage: all that is the same whatever the forces, done once.
+
+    Parameters
+    ----------
+    road, speed, time_step, start, scheme, compiled, progress
+        As for `newmark_loads`.
+    at, points : ndarray
+        Where forces act, and where the deflection is wanted [m].
+    samples : int
+        Steps of the forces.
+
+    Returns
+    -------
+    callable
+        Steps through the passage of forces, shape (time, load) [N], and returns the result of `newmark_loads`.
+    """
+    with checking() as check:
         speed = check.finite("speed", speed, "m/s")
         time_step = check.positive("time_step", time_step, "s")
         start = check.finite("start", start, "m")
         row = scheme_named(check, scheme)
-        if not check.faults and (len(forces) < 2 or not at.size or not points.size):
-            check.refuse("force", "must have at least two samples, one load and one observation point")
         if not check.faults and road.travels and (start or speed < 0):
             check.refuse(
                 "start", f"must be 0 m, and the speed positive, on a road that travels along, got {start!r} m"
             )
     with checking() as check:
         # A guideway that travels along follows element by element.
-        travelled = road.spacing if road.travels else speed * time_step * len(forces)
+        travelled = road.spacing if road.travels else speed * time_step * samples
         require_on_guideway(
             check,
             road,
@@ -109,7 +154,7 @@ def newmark_loads(
             what="loads and observers travel",
         )
         require_stable_scheme(check, road, row, time_step)
-    require_memory(16.0 * len(forces) * (at.size + points.size), f"{len(forces)} steps of {time_step:g} s")
+    require_memory(16.0 * samples * (at.size + points.size), f"{samples} steps of {time_step:g} s")
     march = March(
         guideway=road,
         scheme=row,
@@ -120,27 +165,32 @@ def newmark_loads(
         tie=no_vehicle(at.size),
         compiled=compiled,
     )
-    state = march.at_rest()
-    state.acting[:] = forces[0]
-    march.released(state, road.rows(march.places(0)).T @ forces[0])
-    nothing: FloatArray = np.zeros_like(forces)
-    trace = march.run(len(forces) - 1, state, roughness=nothing, rate=nothing, loads=forces, progress=progress)
-    values = {
-        "time": time_step * np.arange(len(forces)),
-        "load": at,
-        "point": points,
-        "force": forces,
-        "deflection": trace.observed,
-    }
-    settings = attributes(
-        "loaded",
-        "Response of a finite road to prescribed moving loads: Newmark's method",
-        method="newmark",
-        findings=(),
-        speed=speed,
-        time_step=time_step,
-        start=start,
-        scheme=repr(row),
-        **road.attributes,
-    )
-    return labelled(values, settings)
+    march.prepare()
+
+    def step(forces: FloatArray) -> xr.Dataset:
+        state = march.at_rest()
+        state.acting[:] = forces[0]
+        march.released(state, road.rows(march.places(0)).T @ forces[0])
+        nothing: FloatArray = np.zeros_like(forces)
+        trace = march.run(samples - 1, state, roughness=nothing, rate=nothing, loads=forces, progress=progress)
+        values = {
+            "time": time_step * np.arange(samples),
+            "load": at,
+            "point": points,
+            "force": forces,
+            "deflection": trace.observed,
+        }
+        settings = attributes(
+            "loaded",
+            "Response of a finite road to prescribed moving loads: Newmark's method",
+            method="newmark",
+            findings=(),
+            speed=speed,
+            time_step=time_step,
+            start=start,
+            scheme=repr(row),
+            **road.attributes,
+        )
+        return labelled(values, settings)
+
+    return step

@@ -200,7 +200,7 @@ def _warm_up(case: Case, methods: Mapping[str, Method], progress: Progress) -> N
     short = replace(case, scenario=shortened(case.scenario, brief))
     for number, (name, method) in enumerate(methods.items()):
         progress(f"loading {name}", number / len(methods))
-        method.prepare(short)()
+        method.prepare(short)(short.given)
 
 
 def _timed(method: Method, case: Case, runs: int) -> tuple[float, float, xr.Dataset]:
@@ -209,10 +209,11 @@ def _timed(method: Method, case: Case, runs: int) -> tuple[float, float, xr.Data
     solves: list[float] = []
     began = time.perf_counter()
     while len(setups) < runs and (not setups or time.perf_counter() - began < TIMING.patience):
+        given = case.given
         first = time.perf_counter()
         solve = method.prepare(case)
         second = time.perf_counter()
-        result = solve()
+        result = solve(given)
         solves.append(time.perf_counter() - second)
         setups.append(second - first)
     return statistics.median(setups), statistics.median(solves), result
@@ -225,7 +226,7 @@ def _row(
     setup, solve, result = _timed(method, case, runs)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ValidityWarning)
-        method.prepare(case)()
+        method.prepare(case)(case.given)
     said = [str(warning.message) for warning in caught if issubclass(warning.category, ValidityWarning)]
     found, wanted = aligned(result, case, reference)
     if memory:
@@ -350,8 +351,9 @@ def _measure_memory(asked: Mapping[str, Any]) -> int:
     method = (FOR_VEHICLE if isinstance(scenario.case, Drive) else FOR_LOADS)[asked["method"]]
     with threadpool_limits(limits=1), _quiet():
         _warm_up(case, {asked["method"]: method}, silent)
+        given = case.given
         tracemalloc.start()
-        method.prepare(case)()
+        method.prepare(case)(given)
         return tracemalloc.get_traced_memory()[1]
 
 

@@ -123,7 +123,7 @@ def converged(scenario: Scenario, progress: Progress = silent) -> Reference:
     def solved(level: int, around: float) -> Quantities:
         case = Case(scenario=scenario, time_step=step / 2**level, element=element / 2**level, around=around)
         heading = f"converged answer, refinement {level}"
-        result = prepare(case, travels=endless, progress=under(heading, progress))()
+        result = prepare(case, travels=endless, progress=under(heading, progress))(case.given)
         return {name: values[:: 2**level].copy() for name, values in quantities(result, scenario).items()}
 
     # First the length of the road, coarsely: what comes back from its ends changes the answer like a mesh error.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,12 +17,12 @@ from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import Track
 from movingfrf.response.simulation import driven
 from movingfrf.roughness.profile import Profile
+from movingfrf.scenarios.forces import Loads
 from movingfrf.scenarios.scenario import Drive, Passage, Scenario, drive_of, passage_of
 from movingfrf.scenarios.stepped import (
     DISCRETISATION,
     EXCHANGED,
     Division,
-    Solve,
     coupled,
     divisible,
     loaded,
@@ -37,6 +37,14 @@ from movingfrf.stepping.impulse import CANCELLING, struck_track
 from movingfrf.stepping.marching import numba_is_there
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# What solves a prepared case: of a profile, or of prescribed loads. Preparing does not see them, so that what is
+# prepared serves every case of a batch.
+Solve = Callable[[Any], "xr.Dataset"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -84,16 +92,15 @@ class Case:
         return np.unique(self.scenario.case.offsets["ahead"])
 
     @property
-    def parts(self) -> tuple[Vehicle, Profile]:
-        """Give vehicle and profile, as every coupled method takes them."""
-        drive = drive_of(self.scenario)
-        return drive.vehicle, drive.road.profile
+    def vehicle(self) -> Vehicle:
+        """The vehicle."""
+        return drive_of(self.scenario).vehicle
 
-    def loaded(self) -> tuple[tuple[FloatArray, FloatArray], dict[str, Any]]:
-        """Give forces and positions, and the rest as keywords, as every method for prescribed loads takes them."""
-        loads, journey = passage_of(self.scenario).loads, self.journey
-        how = {"speed": journey.speed, "time_step": journey.time_step, "observe": loads.observe}
-        return (loads.at(journey.times), loads.positions), how
+    @property
+    def given(self) -> Profile | Loads:
+        """What differs from case to case of a batch: profile or loads, a copy that remembers nothing."""
+        case = self.scenario.case
+        return replace(case.loads) if isinstance(case, Passage) else replace(case.road.profile)
 
     @property
     def run_in(self) -> float:
@@ -114,8 +121,9 @@ def _transformed(case: Case, guideway: Guideway) -> Solve:
     """Solve in the frequency domain, on any guideway."""
     if isinstance(case.scenario.case, Passage):
         passage = replace(case.scenario.case, guideway=guideway, journey=case.journey)
-        return passage.run
-    return lambda: driven(guideway, *case.parts, case.journey)
+        return lambda loads: replace(passage, loads=loads).run()
+    vehicle, journey = case.vehicle, case.journey
+    return lambda profile: driven(guideway, vehicle, profile, journey)
 
 
 def _moving_frf(case: Case) -> Solve:
@@ -140,10 +148,18 @@ def _duhamel(case: Case) -> Solve:
         offsets=case.offsets,
         time_step=case.time_step / per_step,
     )
+    journey = case.journey
     if isinstance(case.scenario.case, Passage):
-        given, how = case.loaded()
-        return lambda: duhamel_loads(struck, *given, **how)
-    return lambda: convolved(struck, *case.parts, case.journey)
+        return lambda loads: duhamel_loads(
+            struck,
+            loads.at(journey.times),
+            loads.positions,
+            speed=journey.speed,
+            time_step=journey.time_step,
+            observe=loads.observe,
+        )
+    vehicle = case.vehicle
+    return lambda profile: convolved(struck, vehicle, profile, journey)
 
 
 def stepped(
@@ -156,7 +172,7 @@ def stepped(
 ) -> Solve:
     """Step vehicle and road; where the road is the same everywhere the weight has a run of its own."""
     return coupled(
-        (case.scenario.guideway, *case.parts),
+        (case.scenario.guideway, case.vehicle),
         case.journey,
         case.division(travels=travels),
         superposed=superposed,
@@ -184,9 +200,10 @@ def _sim(case: Case) -> Solve:
 
 def newmark(case: Case, *, travels: bool = False, progress: Progress = silent) -> Solve:
     """Step the road under prescribed loads."""
-    passage = passage_of(case.scenario)
-    forces = (passage.loads.at(case.journey.times), passage.loads.positions, passage.loads.observe)
-    return loaded(passage.guideway, forces, case.journey, case.division(travels=travels), progress=progress)
+    loads, journey = passage_of(case.scenario).loads, case.journey
+    division = case.division(travels=travels)
+    solve = loaded(case.scenario.guideway, (loads.positions, loads.observe), journey, division, progress=progress)
+    return lambda loads: solve(loads.at(journey.times))
 
 
 def _newmark_window(case: Case) -> Solve:
@@ -200,7 +217,7 @@ class Method:
     Parameters
     ----------
     prepare : callable
-        Prepares a case and returns what solves it.
+        Prepares a case, all that a batch shares, and returns what solves it of a profile or of loads.
     words : str
         What the method does, in a few words.
     divides : bool
@@ -223,6 +240,13 @@ class Method:
     usual: bool = False
     beside: str | None = None
 
+    @property
+    def shares(self) -> str:
+        """What it prepares, and a batch shares, in a few words; none: nothing."""
+        if self.strikes:
+            return "the moving impulse response of the struck road"
+        return "mesh, factorised matrices and, with a vehicle, the smooth run-in" if self.divides else ""
+
 
 FOR_VEHICLE: dict[str, Method] = {
     "moving-frf": Method(prepare=_moving_frf, words="moving FRF in closed form", usual=True),
@@ -233,7 +257,9 @@ FOR_VEHICLE: dict[str, Method] = {
         usual=True,
     ),
     "moving-frf-fe-plain": Method(
-        prepare=_moving_frf_fe_plain, words="moving FRF of 40 m of finite elements, as in the paper", strikes=True
+        prepare=_moving_frf_fe_plain,
+        words="moving FRF of 40 m of finite elements, as in the paper",
+        strikes=True,
     ),
     "duhamel": Method(
         prepare=_duhamel,
@@ -250,7 +276,9 @@ FOR_VEHICLE: dict[str, Method] = {
         beside="cdfm-window",
     ),
     "cdfm-window": Method(
-        prepare=_cdfm_window, words="coupled method, a stretch of road that travels along", divides=True
+        prepare=_cdfm_window,
+        words="coupled method, a stretch of road that travels along",
+        divides=True,
     ),
     "cdfm-weight": Method(
         prepare=_cdfm_weight,
@@ -259,7 +287,11 @@ FOR_VEHICLE: dict[str, Method] = {
         finite=True,
     ),
     "sim": Method(
-        prepare=_sim, words="separate iterative method, the whole road", divides=True, finite=True, usual=True
+        prepare=_sim,
+        words="separate iterative method, the whole road",
+        divides=True,
+        finite=True,
+        usual=True,
     ),
 }
 FOR_LOADS: dict[str, Method] = {
@@ -273,7 +305,9 @@ FOR_LOADS: dict[str, Method] = {
         beside="newmark-window",
     ),
     "newmark-window": Method(
-        prepare=_newmark_window, words="Newmark's method, a stretch of road that travels along", divides=True
+        prepare=_newmark_window,
+        words="Newmark's method, a stretch of road that travels along",
+        divides=True,
     ),
 }
 

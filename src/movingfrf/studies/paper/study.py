@@ -225,7 +225,7 @@ class Study:
         case = scenario("truck")
         of = Case(scenario=case, time_step=case.journey.time_step, element=elements(case.guideway)[-1])
         with quiet():
-            return FOR_VEHICLE[method].prepare(of)()
+            return FOR_VEHICLE[method].prepare(of)(of.given)
 
     @cached_property
     def compared(self) -> Comparison:
