@@ -19,7 +19,7 @@ from movingfrf.commands.main import main
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import shortened
 from movingfrf.scenarios.stepped import elements
-from movingfrf.studies.comparison.comparison import Point, peak_memory, time_at
+from movingfrf.studies.comparison.comparison import Point, peak_memory, ratios, time_at
 from movingfrf.studies.comparison.convergence import converged, maximum_error, relative_l2
 from movingfrf.studies.comparison.files import as_json, convergence_as_json, curve_as_csv, table_as_csv
 from movingfrf.studies.comparison.methods import Case
@@ -35,12 +35,13 @@ TIMOSHENKO = SHORT.replace("euler_bernoulli_beam", "timoshenko_beam").replace(
     "bending_damping = 0.0", "shear_stiffness = 4.0e8\nrotary_inertia = 5.5"
 )
 METHODS = ["moving-frf", "moving-frf-fe", "duhamel", "cdfm", "sim"]
+BATCH = 4
 QUANTITIES = ("contact_force", "deflection", "wheel_acceleration")
 
 
 @pytest.fixture(scope="module")
 def found():
-    return mf.compare(parse_scenario(SHORT, name="short"), METHODS, memory=False)
+    return mf.compare(parse_scenario(SHORT, name="short"), METHODS, batch=BATCH, memory=False)
 
 
 def row(found, method):
@@ -101,6 +102,28 @@ def test_times_at_equal_error_lie_on_the_lines(found):
                 assert seconds >= min(p.seconds for p in points) * (1 - 1e-12)
 
 
+def test_a_batch_shares_the_set_up(found):
+    assert found.batch == BATCH
+    for one in found.rows:
+        assert one.batch_s == pytest.approx(one.setup_s / BATCH + one.solve_s)
+    for target, times in found.equal_error_in_batch.items():
+        for method, seconds in times.items():
+            alone = found.equal_error[target][method]
+            assert math.isnan(seconds) == math.isnan(alone)
+            assert not seconds > alone
+    # Both are mostly set-up: struck roads, a mesh and a run-in against 1.6 s of travel.
+    assert found.equal_error_in_batch[1e-3]["duhamel"] < 0.5 * found.equal_error[1e-3]["duhamel"]
+    over = ratios(found, 1e-3, in_batch=True)
+    times = found.equal_error_in_batch[1e-3]
+    assert over["cdfm"] == pytest.approx(times["cdfm"] / times["moving-frf"])
+
+
+def test_reading_a_time_at_equal_error_in_a_batch():
+    line = [one._replace(setup_s=0.8) for one in points([1e-1, 1e-2], [1.0, 1.0])]
+    assert time_at(line, "a", "force", 1e-2) == pytest.approx(1.0)
+    assert time_at(line, "a", "force", 1e-2, batch=4) == pytest.approx(0.4)
+
+
 def points(errors, seconds, element=0.5):
     steps = 8e-3 / 2.0 ** np.arange(len(errors))
     return [
@@ -143,6 +166,9 @@ def test_what_is_written(found):
     assert written["converged_answer"]["movement_relative_l2"].keys() == set(QUANTITIES)
     assert written["ratio_at_equal_error"]["0.001"]["moving-frf"] == pytest.approx(1.0)
     assert len(written["error_over_time"]) == len(found.curve)
+    assert written["batch"] == BATCH
+    assert written["ratio_at_equal_error_in_batch"]["0.001"] == ratios(found, 1e-3, in_batch=True)
+    assert all(table[name]["batch_s"] < table[name]["setup_s"] + table[name]["solve_s"] for name in METHODS)
     for text, count in (
         (table_as_csv(found), len(found.rows)),
         (curve_as_csv(found), len(found.curve)),
@@ -158,6 +184,24 @@ def test_the_report_is_one_page(found):
     assert not re.search(r'(?:src|href)="(?!#)|url\((?!#)|@import', page)
     for words in ("short: methods compared", "cdfm-window", "The converged answer", "over moving-frf", "elements"):
         assert words in page
+
+
+def test_the_report_says_what_is_shared(found):
+    page = render(found)
+    for words in (
+        "A batch of 4 cases that differ by their profile alone shares the set-up: ",
+        "nothing, each case being a call of its own (moving-frf)",
+        "the moving impulse response of the struck road (moving-frf-fe, duhamel)",
+        "and, with a vehicle, the smooth run-in (cdfm, cdfm-window, sim)",
+        "set-up / 4 + solving",
+        "a case in a batch of 4",
+        "in a batch of 4, the time over that of moving-frf",
+    ):
+        assert words in page
+    rows = [one._replace(batch_s=math.nan) for one in found.rows]
+    page = render(replace(found, batch=1, rows=rows, equal_error_in_batch={}))
+    assert "The set-up counts in full." in page
+    assert "batch" not in page
 
 
 def test_the_converged_answer_knows_when_it_has_not_converged():
@@ -196,6 +240,11 @@ def test_what_cannot_be_compared_is_refused(text, methods, message):
         mf.compare(parse_scenario(text), methods)
 
 
+def test_a_batch_has_at_least_one_case():
+    with pytest.raises(ValueError, match="batch must be a whole number of at least 1, got 0"):
+        mf.compare(parse_scenario(SHORT), batch=0)
+
+
 def test_a_rigid_road_is_refused():
     scenario = parse_scenario(SHORT)
     rigid = mf.Scenario(
@@ -210,10 +259,10 @@ def test_a_rigid_road_is_refused():
 def test_the_command(tmp_path, capsys):
     file = tmp_path / "loads.toml"
     file.write_text(LOADS)
-    chosen = ["--methods", "moving-frf,newmark", "--no-curve", "--output", str(tmp_path / "out")]
+    chosen = ["--methods", "moving-frf,newmark", "--batch", "3", "--no-curve", "--output", str(tmp_path / "out")]
     assert main(["compare", str(file), *chosen]) == 0
     told = capsys.readouterr().out
-    for words in ("newmark-window", "set-up", "deflection, relative L2", "wrote"):
+    for words in ("newmark-window", "set-up", "deflection, relative L2", "by their forces alone", "wrote"):
         assert words in told
     names = ["compare.csv", "compare.json", "convergence.csv", "convergence.json", "report.html"]
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == names

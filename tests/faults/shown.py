@@ -109,6 +109,18 @@ FAULTS = [
         "superposed=superposed",
     ),
     Fault("bridge called steady", "reports/ways.py", 'and not attrs["superposed"]', 'and attrs["superposed"]'),
+    Fault(
+        "set-up in full in a batch",
+        "studies/comparison/comparison.py",
+        "row.setup_s / batch + row.solve_s",
+        "row.setup_s + row.solve_s",
+    ),
+    Fault(
+        "set-up of a batch free",
+        "studies/comparison/comparison.py",
+        "point.setup_s * (1 - 1 / batch)",
+        "point.setup_s",
+    ),
     Fault("times without numbers", "studies/comparison/page.py", 'f"{tick:g}" if free else ""', '""'),
     Fault("empty spectrum drawn", "reports/plots.py", "> SPECTRUM_STYLE.road_floor).any()", "> 0).any()"),
     Fault("run-in off the road", "scenarios/stepped.py", "max(0.0, math.floor(behind", "max(0.0, math.ceil(behind"),

@@ -227,6 +227,12 @@ FAULTS = [
         "static_loads - held @ deflection",
         "static_loads",
     ),
+    Fault(
+        "case of a batch that begins where the last one ended",
+        "stepping/coupled.py",
+        "else settled.copied()",
+        "else settled",
+    ),
     Fault("sag counted as motion", "stepping/coupled.py", "motion -= steady.motion", "pass"),
     Fault(
         "rate of another speed",

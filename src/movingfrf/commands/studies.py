@@ -17,6 +17,7 @@ def compare(
     *,
     methods: str | None = None,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    batch: int = 1,
     curve: bool = True,
 ) -> None:
     """Solve a scenario by several methods; compare their times, memory and errors.
@@ -34,6 +35,9 @@ def compare(
         default. Beside cdfm and newmark stands their variant on a road that travels along.
     output
         The folder to write into; out/NAME-compared beside the scenario by default.
+    batch
+        Cases that differ by their profile, or by their loads, alone, and share what a method prepares (matrices,
+        factorisation, run-in, struck road): the time of one case is told as well.
     curve
         Whether to run all methods over a range of steps as well, which takes most of the time.
     """
@@ -51,7 +55,7 @@ def compare(
         folder = output if output is not None else file.parent / "out" / f"{scenario.name}-compared"
         names = None if methods is None else [name.strip() for name in methods.split(",") if name.strip()]
         with replacing(folder) as files:
-            found = compared(scenario, names, curve=curve, progress=stages.report)
+            found = compared(scenario, names, batch=batch, curve=curve, progress=stages.report)
             stages.report("report.html", 0.0)
             files |= {
                 "compare.json": written.as_json(found),

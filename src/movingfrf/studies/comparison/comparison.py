@@ -71,6 +71,7 @@ class Performance(NamedTuple):
     maximum_error: dict[str, float]
     ratio: float  # of its time to that of moving-frf; nan without that
     findings: list[str]  # what the method itself says about the validity of its result
+    batch_s: float  # of a case in a batch, over which the set-up is shared; nan without a batch
 
 
 class Point(NamedTuple):
@@ -81,6 +82,7 @@ class Point(NamedTuple):
     element: float
     seconds: float
     relative_l2: dict[str, float]
+    setup_s: float = 0.0  # of its seconds, what a batch shares
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -99,6 +101,10 @@ class Comparison(Value):
         What errors are relative to.
     equal_error : dict of float to dict of str to float
         Error in the first quantity → method → time at that error [s]; nan where it is not reached.
+    batch : int
+        Cases over which the set-up is shared; 1: it counts in full.
+    equal_error_in_batch : dict of float to dict of str to float
+        As `equal_error`, of a case in the batch [s]; empty without one.
     """
 
     scenario: Scenario
@@ -106,6 +112,8 @@ class Comparison(Value):
     curve: list[Point]
     reference: Reference
     equal_error: dict[float, dict[str, float]] = field(default_factory=dict)
+    batch: int = 1
+    equal_error_in_batch: dict[float, dict[str, float]] = field(default_factory=dict)
 
     def told(self) -> list[tuple[str, str]]:
         """Tell scenario, and of each method its time and error, in words."""
@@ -124,6 +132,7 @@ def compare(
     scenario: Scenario,
     methods: Sequence[str] | None = None,
     *,
+    batch: int = 1,
     curve: bool = True,
     memory: bool = True,
     runs: int = TIMING.runs,
@@ -139,6 +148,9 @@ def compare(
         A vehicle on a rough road, or prescribed loads, on a track of an Euler–Bernoulli beam.
     methods : sequence of str, optional
         Names of methods; None: the usual ones.
+    batch : int
+        Cases that differ by their profile, or by their loads, alone: what a method prepares is shared by all of
+        them, and the time of one, set-up / batch + solving, is told as well.
     curve : bool
         Whether to run the methods over a range of steps as well.
     memory : bool
@@ -163,6 +175,7 @@ def compare(
     with checking() as check:
         if not isinstance(scenario, Scenario):
             check.refuse("scenario", mistaken("scenario", scenario))
+        batch = check.whole("batch", batch, least=1)
     compared = chosen(scenario, methods)
     own = Case(scenario=scenario, time_step=scenario.journey.time_step, element=elements(scenario.guideway)[-1])
     for case in (own, replace(own, element=elements(scenario.guideway)[0])):
@@ -178,10 +191,23 @@ def compare(
     if first is not None:
         least = first.setup_s + first.solve_s
         rows = [row._replace(ratio=(row.setup_s + row.solve_s) / least) for row in rows]
+    if batch > 1:
+        rows = [row._replace(batch_s=row.setup_s / batch + row.solve_s) for row in rows]
     main = next(iter(reference.quantities))
-    equal = {target: {name: time_at(points, name, main, target) for name in compared} for target in TARGETS}
+
+    def equal(cases: int) -> dict[float, dict[str, float]]:
+        return {
+            target: {name: time_at(points, name, main, target, cases) for name in compared} for target in TARGETS
+        }
+
     return Comparison(
-        scenario=scenario, rows=rows, curve=points, reference=reference, equal_error=equal if points else {}
+        scenario=scenario,
+        rows=rows,
+        curve=points,
+        reference=reference,
+        equal_error=equal(1) if points else {},
+        batch=batch,
+        equal_error_in_batch=equal(batch) if points and batch > 1 else {},
     )
 
 
@@ -242,6 +268,7 @@ def _row(
         maximum_error(found, wanted),
         math.nan,
         list(dict.fromkeys(said)),
+        math.nan,
     )
 
 
@@ -264,11 +291,11 @@ def _curve(
         setup, solve, result = _timed(methods[name], run, timings)
         error = relative_l2(*aligned(result, run, reference))
         element = run.element if methods[name].divides else math.nan
-        points.append(Point(name, run.time_step, element, setup + solve, error))
+        points.append(Point(name, run.time_step, element, setup + solve, error, setup))
     return points
 
 
-def time_at(points: Sequence[Point], method: str, quantity: str, target: float) -> float:
+def time_at(points: Sequence[Point], method: str, quantity: str, target: float, batch: int = 1) -> float:
     """Read from the error–time figure how long a method takes to an error.
 
     Parameters
@@ -281,6 +308,8 @@ def time_at(points: Sequence[Point], method: str, quantity: str, target: float) 
         Quantity whose relative L2 error counts.
     target : float
         That error, a ratio.
+    batch : int
+        Cases over which the set-up is shared.
 
     Returns
     -------
@@ -296,7 +325,7 @@ def time_at(points: Sequence[Point], method: str, quantity: str, target: float) 
     for line in lines.values():
         line.sort(key=lambda point: -point.time_step)
         errors = np.log([max(point.relative_l2[quantity], 1e-300) for point in line])
-        seconds = np.log([point.seconds for point in line])
+        seconds = np.log([point.seconds - point.setup_s * (1 - 1 / batch) for point in line])
         aim = math.log(target)
         times += [float(value) for value, error in zip(seconds, errors, strict=True) if error <= aim]
         for n in range(len(line) - 1):
@@ -357,7 +386,7 @@ def _measure_memory(asked: Mapping[str, Any]) -> int:
         return tracemalloc.get_traced_memory()[1]
 
 
-def ratios(comparison: Comparison, target: float) -> dict[str, float]:
+def ratios(comparison: Comparison, target: float, *, in_batch: bool = False) -> dict[str, float]:
     """Time of each method over that of moving-frf, at equal error.
 
     Parameters
@@ -366,13 +395,15 @@ def ratios(comparison: Comparison, target: float) -> dict[str, float]:
         What `compare` found.
     target : float
         The error, a ratio.
+    in_batch : bool
+        Whether times are those of a case in the batch.
 
     Returns
     -------
     dict of str to float
         By method; nan where either does not reach the error.
     """
-    times = comparison.equal_error[target]
+    times = (comparison.equal_error_in_batch if in_batch else comparison.equal_error)[target]
     least = times.get("moving-frf", math.nan)
     return {name: seconds / least for name, seconds in times.items()}
 

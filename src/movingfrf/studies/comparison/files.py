@@ -55,6 +55,13 @@ def convergence_as_json(comparison: Comparison) -> str:
         "error_over_time": [point._asdict() for point in comparison.curve],
         "seconds_at_equal_error": {f"{target:g}": times for target, times in comparison.equal_error.items()},
         "ratio_at_equal_error": {f"{target:g}": ratios(comparison, target) for target in comparison.equal_error},
+        "batch": comparison.batch,
+        "seconds_at_equal_error_in_batch": {
+            f"{target:g}": times for target, times in comparison.equal_error_in_batch.items()
+        },
+        "ratio_at_equal_error_in_batch": {
+            f"{target:g}": ratios(comparison, target, in_batch=True) for target in comparison.equal_error_in_batch
+        },
     }
     return json.dumps(finite(content), indent=1) + "\n"
 
@@ -76,13 +83,14 @@ def table_as_csv(comparison: Comparison) -> str:
     head = ["method", "time_step [s]", "element [m]", "setup [s]", "solve [s]", "peak memory [bytes]"]
     head += [f"relative L2 error of {name}" for name in names]
     head += [f"maximum error of {name}" for name in names]
-    head += ["time over moving-frf"]
+    head += ["time over moving-frf", f"time of a case in a batch of {comparison.batch} [s]"]
     lines = [
         [
             *(row.method, row.time_step, row.element, row.setup_s, row.solve_s, row.peak_bytes),
             *(row.relative_l2[name] for name in names),
             *(row.maximum_error[name] for name in names),
             row.ratio,
+            row.batch_s,
         ]
         for row in comparison.rows
     ]
@@ -108,10 +116,14 @@ def curve_as_csv(comparison: Comparison) -> str:
         "time_step [s]",
         "element [m]",
         "time [s]",
+        "set-up of it [s]",
         *(f"relative L2 error of {name}" for name in names),
     ]
     lines = [
-        [point.method, point.time_step, point.element, point.seconds, *(point.relative_l2[name] for name in names)]
+        [
+            *(point.method, point.time_step, point.element, point.seconds, point.setup_s),
+            *(point.relative_l2[name] for name in names),
+        ]
         for point in comparison.curve
     ]
     return _csv(head, lines)

@@ -242,10 +242,12 @@ class Method:
 
     @property
     def shares(self) -> str:
-        """What it prepares, and a batch shares, in a few words; none: nothing."""
+        """What it prepares, and a batch shares, in a few words."""
         if self.strikes:
             return "the moving impulse response of the struck road"
-        return "mesh, factorised matrices and, with a vehicle, the smooth run-in" if self.divides else ""
+        if self.divides:
+            return "the mesh, the factorised matrices and, with a vehicle, the smooth run-in"
+        return "nothing, each case being a call of its own"
 
 
 FOR_VEHICLE: dict[str, Method] = {
@@ -257,9 +259,7 @@ FOR_VEHICLE: dict[str, Method] = {
         usual=True,
     ),
     "moving-frf-fe-plain": Method(
-        prepare=_moving_frf_fe_plain,
-        words="moving FRF of 40 m of finite elements, as in the paper",
-        strikes=True,
+        prepare=_moving_frf_fe_plain, words="moving FRF of 40 m of finite elements, as in the paper", strikes=True
     ),
     "duhamel": Method(
         prepare=_duhamel,
@@ -276,9 +276,7 @@ FOR_VEHICLE: dict[str, Method] = {
         beside="cdfm-window",
     ),
     "cdfm-window": Method(
-        prepare=_cdfm_window,
-        words="coupled method, a stretch of road that travels along",
-        divides=True,
+        prepare=_cdfm_window, words="coupled method, a stretch of road that travels along", divides=True
     ),
     "cdfm-weight": Method(
         prepare=_cdfm_weight,
@@ -287,11 +285,7 @@ FOR_VEHICLE: dict[str, Method] = {
         finite=True,
     ),
     "sim": Method(
-        prepare=_sim,
-        words="separate iterative method, the whole road",
-        divides=True,
-        finite=True,
-        usual=True,
+        prepare=_sim, words="separate iterative method, the whole road", divides=True, finite=True, usual=True
     ),
 }
 FOR_LOADS: dict[str, Method] = {
@@ -305,9 +299,7 @@ FOR_LOADS: dict[str, Method] = {
         beside="newmark-window",
     ),
     "newmark-window": Method(
-        prepare=_newmark_window,
-        words="Newmark's method, a stretch of road that travels along",
-        divides=True,
+        prepare=_newmark_window, words="Newmark's method, a stretch of road that travels along", divides=True
     ),
 }
 

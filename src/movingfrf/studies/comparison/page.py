@@ -109,12 +109,34 @@ def _summary(comparison: Comparison) -> str:
         f"{_main(comparison)}, unless said otherwise, relative to a converged answer from "
         "the time domain."
     )
-    for target in comparison.equal_error:
-        found = {name: ratio for name, ratio in ratios(comparison, target).items() if math.isfinite(ratio)}
-        others = [f"{number(ratio, 3)} ({name})" for name, ratio in found.items() if name != "moving-frf"]
-        if others:
-            words += f" At an error of {number(target, 1)} the time over that of moving-frf is {', '.join(others)}."
-    return words
+    for in_batch, times in ((False, comparison.equal_error), (True, comparison.equal_error_in_batch)):
+        for target in times:
+            found = ratios(comparison, target, in_batch=in_batch)
+            others = [
+                f"{number(ratio, 3)} ({name})"
+                for name, ratio in found.items()
+                if name != "moving-frf" and math.isfinite(ratio)
+            ]
+            where = f", in a batch of {comparison.batch}," if in_batch else ""
+            if others:
+                words += f" At an error of {number(target, 1)}{where} the time over that of moving-frf is "
+                words += f"{', '.join(others)}."
+    return f"{words} {_shared(comparison)}"
+
+
+def _shared(comparison: Comparison) -> str:
+    """Say whether the set-up is shared, and what it is of each method."""
+    if comparison.batch == 1:
+        return "The set-up counts in full."
+    by: dict[str, list[str]] = {}
+    for name in _methods(comparison):
+        by.setdefault((FOR_VEHICLE | FOR_LOADS)[name].shares, []).append(name)
+    shared = "; ".join(f"{shares} ({', '.join(names)})" for shares, names in by.items())
+    what = "profile" if isinstance(comparison.scenario.case, Drive) else "forces"
+    return (
+        f"A batch of {comparison.batch} cases that differ by their {what} alone shares the set-up: {shared}. The "
+        f"cases are solved one after another, so that each takes set-up / {comparison.batch} + solving."
+    )
 
 
 def _settings(comparison: Comparison) -> list[Setting]:
@@ -188,6 +210,9 @@ def _time_table(comparison: Comparison) -> Table:
     beside = "moving-frf" in _methods(comparison)
     if beside:
         columns.append(Column("time over moving-frf", ""))
+    batched = comparison.batch > 1
+    if batched:
+        columns.append(Column(f"a case in a batch of {comparison.batch}", "s"))
     colours = _colours(comparison)
     rows = []
     for row in comparison.rows:
@@ -198,9 +223,11 @@ def _time_table(comparison: Comparison) -> Table:
             number(row.solve_s, 3),
             number(row.peak_bytes / 2**20, 3) if row.peak_bytes else "–",
             *([_cell(row.ratio, _three)] if beside else []),
+            *([number(row.batch_s, 3)] if batched else []),
         ]
         rows.append(Row(row.method, cells, colours[row.method]))
     words = "Times (medians) and memory (peak of all arrays) at the scenario's own step."
+    words += f" {_shared(comparison)}" if batched else ""
     return Table(words, "method", columns, rows)
 
 
@@ -234,19 +261,26 @@ def _three(value: float) -> str:
 def _equal_error_table(comparison: Comparison) -> Table:
     columns: list[Column] = []
     cells: dict[str, list[str]] = {name: [] for name in _methods(comparison)}
-    for target, times in comparison.equal_error.items():
-        columns.append(Column(f"time to an error of {number(target, 1)}", "s"))
+
+    def add(words: str, target: float, times: dict[str, float], *, in_batch: bool) -> None:
+        columns.append(Column(words, "s"))
         for name, row in cells.items():
             row.append(_cell(times[name], _three))
         if "moving-frf" in cells:
             columns.append(Column("over moving-frf", ""))
-            over = ratios(comparison, target)
+            over = ratios(comparison, target, in_batch=in_batch)
             for name, row in cells.items():
                 row.append(_cell(over[name], _three))
+
+    for target, times in comparison.equal_error.items():
+        add(f"time to an error of {number(target, 1)}", target, times, in_batch=False)
+    for target, times in comparison.equal_error_in_batch.items():
+        add(f"a case in a batch of {comparison.batch}, {number(target, 1)}", target, times, in_batch=True)
     colours = _colours(comparison)
     return Table(
         f"Time, set-up included, to equal error in {_main(comparison)}, read from the figure: "
-        "the least on a line of the method.",
+        "the least on a line of the method."
+        + (f" In a batch of {comparison.batch} the set-up is shared." if comparison.batch > 1 else ""),
         "method",
         columns,
         [Row(name, row, colours[name]) for name, row in cells.items()],
