@@ -45,6 +45,7 @@ format: $(READY)
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
+# What every case costs, with numba and without, where the time goes, and the other methods.
 bench: $(READY)
 	$(BIN)/python -m benchmarks.bench
 
