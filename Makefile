@@ -12,7 +12,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 TESTS = PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadgroup
 
-.PHONY: demo paper test test-slow lowest newest coverage bench cost against scale random fuzz honest accuracy faults calls lint format dist picture clean
+.PHONY: demo paper test test-slow lowest newest coverage bench speed cost against scale random fuzz honest accuracy faults calls lint format dist picture clean
 
 demo: $(READY)
 	@mkdir -p out
@@ -45,16 +45,24 @@ format: $(READY)
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
+# What every case costs, with numba and without, where the time goes, and the other methods.
 bench: $(READY)
 	$(BIN)/python -m benchmarks.bench
+
+# Whether a case has become slower than `benchmarks/ratios.toml` says, with and without numba; UPDATE=1 writes into that
+# file what is measured; ROWS="reference train" measures these.
+ROWS ?=
+UPDATE ?=
+speed: $(READY)
+	$(BIN)/python -m benchmarks.speed $(if $(UPDATE),--update) $(ROWS)
 
 # What commands cost, against the imports that they cannot do without.
 cost: $(READY)
 	$(BIN)/python -m benchmarks.cost
 
-# This checkout against another, alternately: make against OLD=../earlier
+# This checkout against another, alternately: make against OLD=../earlier; NUMPY=1 without the compiled kernels.
 against: $(READY)
-	$(BIN)/python -m benchmarks.against $(OLD)
+	$(BIN)/python -m benchmarks.against $(if $(NUMPY),--numpy) $(OLD)
 
 # A profile of 500 km and a train of sixteen coaches over ten kilometres: time and memory.
 scale: $(READY)

@@ -49,8 +49,9 @@ SOLVING = r"""
 import json, statistics, time, warnings
 import numpy as np
 import movingfrf as mf
+from benchmarks.cases import SCENARIO
 warnings.simplefilter("ignore")
-road = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9), mf.Spring(stiffness=8e6, damping=3e4))
+road = SCENARIO.guideway
 rail = mf.track(
     mf.TimoshenkoBeam(bending_stiffness=1.3e7, mass=120.0, shear_stiffness=4e8, rotary_inertia=0.5),
     mf.OnMass(
@@ -105,7 +106,7 @@ def commands(folder: Path, threads: str) -> list[tuple[str, float, float, float]
     return found
 
 
-def threads(folder: Path) -> list[tuple[str, float, float, float]]:
+def threads() -> list[tuple[str, float, float, float]]:
     """Name, processor time with two threads [s], that over the time with one, and the largest such ratio."""
     several: dict[str, list[dict[str, float]]] = {"1": [], "2": []}
     for _ in range(3):
@@ -113,7 +114,7 @@ def threads(folder: Path) -> list[tuple[str, float, float, float]]:
             environment = os.environ | {"OMP_NUM_THREADS": number, "OPENBLAS_NUM_THREADS": number}
             ran = subprocess.run(
                 [sys.executable, "-c", SOLVING],
-                cwd=folder,
+                cwd=Path(__file__).parents[1],
                 env=environment,
                 capture_output=True,
                 text=True,
@@ -137,7 +138,7 @@ def main() -> int:
         for heading, measured in (
             ("command, one thread", partial(commands, folder, "1")),
             ("command, two threads", partial(commands, folder, "2")),
-            ("two threads against one", partial(threads, folder)),
+            ("two threads against one", threads),
         ):
             rows = measured()
             print(f"{heading:36s} processor time   ratio   at most")

@@ -24,14 +24,13 @@ from itertools import pairwise
 
 import numpy as np
 import scipy.fft
+from benchmarks.cases import SCENARIO
 
 import movingfrf as mf
 from movingfrf.reports.tables import Table
 from movingfrf.results.labels import labelled
 from movingfrf.roughness.excitation import Touch, excite
-from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.scenario import Scenario
-from movingfrf.scenarios.template import template
 from movingfrf.stepping.marching import March
 from movingfrf.stepping.schemes import SCHEMES
 from movingfrf.stepping.tie import tie_of
@@ -61,8 +60,7 @@ def _lines(table: Table) -> list[list[str]]:
 
 def struck_roads() -> None:
     """Print the error of the moving FRF of 40 m of finite elements against the closed form."""
-    scenario = reference_case()
-    road = scenario.guideway
+    road = SCENARIO.guideway
     offsets = np.array([0.0, 4.27, -4.27])
     omega = 2 * np.pi * np.linspace(0.0, 70.0, 141)
     exact = road.moving_frf(offsets, 10.0, omega)
@@ -78,16 +76,10 @@ def struck_roads() -> None:
         )
 
 
-def reference_case():
-    """Read the reference case: what `movingfrf new` writes."""
-    return parse_scenario(template("scenario"), name="reference case")
-
-
 def steps_of_the_coupled_method() -> None:
     """Time 24,000 steps of the coupled method on about 1200 unknowns."""
-    scenario = reference_case()
-    vehicle = scenario.case.vehicle
-    road = mf.finite_track(scenario.guideway, first=-30.0, last=270.0, element=0.5)
+    vehicle = SCENARIO.case.vehicle
+    road = mf.finite_track(SCENARIO.guideway, first=-30.0, last=270.0, element=0.5)
     march = March(
         guideway=road,
         scheme=SCHEMES["average_acceleration"],
@@ -188,7 +180,7 @@ def main() -> None:
     warnings.simplefilter("ignore", mf.ValidityWarning)
     struck_roads()
     steps_of_the_coupled_method()
-    found = mf.compare(reference_case(), METHODS, batch=BATCH)
+    found = mf.compare(SCENARIO, METHODS, batch=BATCH)
     for table in tables(found):
         printed(table)
     at_equal_error(found)
