@@ -196,9 +196,9 @@ def test_harmonics_are_summed_where_the_stations_are():
         assert road.along(0)(x) == pytest.approx(expected, abs=1e-10 * np.std(road.elevation))
 
 
-def test_the_default_step_is_an_eighth_of_the_shortest_wave():
+def test_the_default_step_is_a_sixteenth_of_the_shortest_wave():
     for spectrum in (FINE, mf.GermanTrack.of_class("low")):
-        assert mf.realise(spectrum, length=40.0).even_step() == pytest.approx(0.125 / spectrum.band[1], rel=1e-9)
+        assert mf.realise(spectrum, length=40.0).even_step() == pytest.approx(0.0625 / spectrum.band[1], rel=1e-9)
 
 
 @pytest.mark.parametrize("kind", [mf.realise, partial(mf.realise_laplace, kurtosis=6.0, segment=1.0)])

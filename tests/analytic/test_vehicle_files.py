@@ -318,7 +318,7 @@ def test_every_entry_of_the_catalogue_can_be_driven():
         assert entry.summary
         vehicle = mf.catalogue(name=name)
         result = mf.simulate(
-            mf.RigidGuideway(), vehicle, profile, speed=10.0, duration=2.0, time_step=5e-3, blend=1.0
+            mf.RigidGuideway(), vehicle, profile, speed=10.0, duration=2.0, time_step=5e-3, blend=3.0
         )
         assert np.isfinite(result.contact_force).all()
 

@@ -11,28 +11,43 @@ FAULTS = [
         "no convective terms", "guideways/waves.py", "for j in range(b + 1 if linear else 1)", "for j in range(1)"
     ),
     Fault("binomial missing", "guideways/waves.py", "comb(b, j) *", "1.0 *"),
-    Fault("sides exchanged", "guideways/waves.py", "(ahead >= 0) == forward", "(ahead < 0) == forward"),
-    Fault("two waves on each side", "guideways/waves.py", "(side > 0) == forward", "(kappa.real > 0) == forward"),
-    Fault("sign behind", "guideways/waves.py", "frf[here] *= -1.0", "frf[here] *= 1.0"),
+    Fault("sides exchanged", "guideways/waves.py", "(ahead >= 0) == direction", "(ahead < 0) == direction"),
+    Fault("two waves on each side", "guideways/waves.py", "side > 0), infinite", "kappa.real > 0), infinite"),
+    Fault("sign behind", "guideways/waves.py", "else -weight[wave, at]", "else weight[wave, at]"),
     Fault(
         "undamped limit from above",
         "guideways/waves.py",
-        "(by_omega / slope).real",
-        "-(by_omega / slope).real",
+        "np.where(doubtful, (evaluated(",
+        "np.where(doubtful, -(evaluated(",
     ),
     Fault(
-        "undamped limit missing", "guideways/waves.py", "_squared(slope) <= uncertain *", "_squared(slope) < 0.0 *"
+        "undamped limit missing", "guideways/waves.py", "squared(slope) <= doubt * doubt", "squared(slope) < 0.0"
     ),
     Fault(
         "conjugate pair on one side",
-        "guideways/waves.py",
+        "guideways/roots.py",
         "rounding_errors: float = 1e4",
         "rounding_errors: float = 1e7",
     ),
-    Fault("waves that meet are let through", "guideways/waves.py", "<= 2 * uncertain", "< 0.0 * uncertain"),
-    Fault("roots that nearly meet left unsettled", "guideways/waves.py", "if settled.all():", "if True:"),
+    Fault("waves that meet are let through", "guideways/waves.py", "<= 2 * doubt *", "< 0.0 * doubt *"),
+    Fault("roots left unsettled", "guideways/roots.py", "if not unsettled.any():", "if True:"),
+    Fault("two roots at one place", "guideways/roots.py", "slope - value * others", "slope - 0.0 * others"),
+    Fault("roots confused on the way", "guideways/roots.py", "if certain else order", "if False else order"),
+    Fault(
+        "a conjugate pair for ever", "guideways/roots.py", "askew: complex = 6e-7 + 8e-7j", "askew: complex = 0.0"
+    ),
     Fault("slope sign", "guideways/waves.py", "(1j * kappa) ** derivative", "(-1j * kappa) ** derivative"),
-    Fault("decay along the road", "guideways/waves.py", "np.exp(1j * kappa[", "np.exp(-1j * kappa["),
+    Fault("decay along the road", "guideways/waves.py", "np.exp(1j * ahead[row]", "np.exp(-1j * ahead[row]"),
+    # The same, compiled.
+    Fault("compiled: waves confused", "guideways/compiled.py", "roots[n] -= step", "roots[n] += step"),
+    Fault("compiled: two roots at one place", "guideways/compiled.py", "slope - value * others[n]", "slope"),
+    Fault("compiled: sides exchanged", "guideways/compiled.py", "side > 0.0", "side < 0.0"),
+    Fault("compiled: undamped limit missing", "guideways/compiled.py", "<= doubt * doubt:", "< 0.0:"),
+    Fault(
+        "compiled: waves that meet are let through", "guideways/compiled.py", "<= 2.0 * doubt *", "< 0.0 * doubt *"
+    ),
+    Fault("compiled: sign behind", "guideways/compiled.py", "if offset >= 0.0 else -total", "if True else -total"),
+    Fault("never compiled", "_basics/compiling.py", "if _chosen[0] is not False else None", "if False else None"),
     Fault("sleeper inertia sign", "guideways/foundations.py", "{(0, 2): self.mass}", "{(0, 2): -self.mass}"),
     Fault("sleeper on a dashpot", "guideways/foundations.py", "{(0, 2): self.mass}", "{(0, 1): self.mass}"),
     Fault("rotary inertia sign", "guideways/beams.py", "rotation[0, 2] = inertia", "rotation[0, 2] = -inertia"),

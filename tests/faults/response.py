@@ -14,7 +14,7 @@ FAULTS = [
     Fault("threads of BLAS let loose", "response/batches.py", "limit(limits=1)", "limit(limits=2)"),
     # Spectra and time.
     Fault("window sign", "response/line.py", "np.exp(-decay * step", "np.exp(decay * step"),
-    Fault("window not undone", "response/line.py", "np.exp(self.decay", "np.exp(0.0 * self.decay"),
+    Fault("window not undone", "response/line.py", "np.exp(self.decay * step", "np.exp(0.0 * step"),
     Fault("line on the real axis", "response/line.py", "- 1j * self.decay", "+ 0j * self.decay"),
     Fault(
         "hertz for radians",
@@ -52,13 +52,13 @@ FAULTS = [
     Fault(
         "a sharp end of the content",
         "response/sampling.py",
-        "fade = 1.0 - smooth_step((np.arange(count) - ends + 1) / max(count - ends, 1))",
+        "fade = 1.0 - smoothest_step((np.arange(count) - ends + 1) / max(count - ends, 1))",
         "fade = np.ones(count)",
     ),
     Fault(
         "sampled at the output's step",
         "response/sampling.py",
-        "SAMPLING.per_station * line.period / step",
+        "wanted.per_station * line.period / step",
         "line.padded",
     ),
     Fault(

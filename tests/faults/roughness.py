@@ -31,7 +31,7 @@ FAULTS = [
         "np.pi * (1 + 1e-9) * np.remainder(",
     ),
     Fault("stations beside whole steps", "roughness/realisation.py", "np.floor(first + SLACK)", "np.ceil(first)"),
-    Fault("four stations to a wave", "roughness/realisation.py", "eighth = 0.125 /", "eighth = 0.25 /"),
+    Fault("four stations to a wave", "roughness/realisation.py", "sixteenth = 0.0625 /", "sixteenth = 0.25 /"),
     Fault(
         "wheel that touches at stations alone", "roughness/combination.py", "sharpest))), 16)", "sharpest))), 1)"
     ),

@@ -17,7 +17,7 @@ from movingfrf.response.truncation import Truncation
 from tests.helpers import DAMPED, VEHICLES
 
 ROAD = DAMPED["euler_bernoulli_winkler"]
-LINE = Line(samples=3000, time_step=1e-3, settling=1.0)
+LINE = Line(samples=3000, time_step=1e-3)
 CUT = Truncation(frequency=70.0)
 
 

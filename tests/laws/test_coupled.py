@@ -153,8 +153,8 @@ def test_a_shifted_road_is_a_delayed_response(name):
     )
     # Stations every 4 cm, so that 2 m are a whole number of them and the splines agree.
     for a, b, c in zip(*(dynamic(r).values() for r in (first, later, ahead)), strict=True):
-        assert difference(b[200:], a[:-200]) < 1e-5
-        assert difference(c, a) < 1e-5
+        assert difference(b[200:], a[:-200]) < 3e-5
+        assert difference(c, a) < 3e-5
         assert np.abs(b[:200]).max() < 1e-4 * np.abs(a).max()
 
 

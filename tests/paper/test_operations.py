@@ -289,7 +289,7 @@ def test_moving_frf_is_four_products_per_frequency(positions, points, count):
     solved = excited(
         Prescribed(guideway=TRACK, loads=np.array(positions), points=np.array(points), speed=10.0),
         lambda line: line.given(forces.T),
-        Line(samples=samples, time_step=step, settling=samples * step),
+        Line(samples=samples, time_step=step, cut=Truncation(frequency=truncation).width),
         step,
         truncation=np.inf,
         wanted=SAMPLING.loads,

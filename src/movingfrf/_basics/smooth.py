@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import comb
+
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
@@ -17,6 +19,27 @@ def smooth_step(x: FloatArray) -> FloatArray:
     """
     x = np.clip(x, 0.0, 1.0)
     return x * x * x * (10.0 + x * (6.0 * x - 15.0))
+
+
+def smoothest_step(x: FloatArray) -> FloatArray:
+    """Polynomial from 0 at x ≤ 0 to 1 at x ≥ 1, its first six derivatives zero at both ends.
+
+    A spectrum that is cut off so rings on by 13!/6! · 2/(ΔΩ t)⁷ only, a time t after what was cut, ΔΩ being the
+    width of the step.
+
+    Examples
+    --------
+    >>> smoothest_step(np.array([-1.0, 0.0, 0.5, 1.0, 2.0])).tolist()
+    [0.0, 0.0, 0.5, 1.0, 1.0]
+    """
+    flat = 6
+    x = np.clip(x, 0.0, 1.0)
+    nearest = np.minimum(x, 1.0 - x)
+    rising = np.zeros_like(x)
+    for power in range(flat, -1, -1):
+        rising = rising * -nearest + comb(flat + power, power) * comb(2 * flat + 1, flat - power)
+    rising *= nearest ** (flat + 1)
+    return np.where(x < 0.5, rising, 1.0 - rising)
 
 
 def smooth_step_slope(x: FloatArray) -> FloatArray:

@@ -177,8 +177,7 @@ def at_offsets(
             f"{wanted}, got {found.shape}"
         )
     rows = np.broadcast_to(found, wanted).astype(complex, copy=False)
-    placed: ComplexArray = rows[back.ravel()].T.reshape(frequencies.size, *shape)
-    return placed
+    return np.moveaxis(rows[back.ravel()].reshape(*shape, frequencies.size), -1, 0)
 
 
 def require_guideway(guideway: object) -> None:

@@ -11,39 +11,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import comb
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray
 from movingfrf._basics.checks import SolveError
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RootSearch:
-    """What tunes the search for the waves, and for the side of the real axis on which each of them counts.
-
-    In brackets, between what each number is safe.
-    """
-
-    # Below this speed the moving frame differs from the fixed one by rounding errors, while the roots that run away
-    # to infinity as v → 0 (one per κⁿ that v alone keeps alive) begin to cost digits.
-    at_rest: float = 1e-13  # [m/s; 1e-15 to 1e-12]
-    # What so many rounding errors of the dynamic stiffness could bring about counts as there: a root that they
-    # could put on the real axis is real and belongs where damping would push it; between two that they could make
-    # one the contour is pinched, and the response infinite. What is let through is right to about the inverse.
-    rounding_errors: float = 1e4  # [1e3 to 1e6]
-    # Newton steps on a root: the last one moves it by less than this share, and squares the error.
-    most_steps: int = 4  # [2 to 20]
-    converged: float = 1e-9  # [1e-16 to 1e-8]
-    # Steps of all roots together, where some nearly meet.
-    most_steps_together: int = 40  # [20 to 200]
-    askew: complex = 6e-7 + 8e-7j  # how far they are moved first, off every symmetry [1e-8 to 1e-5 in magnitude]
-    # Roots of two kinds that differ by this factor are computed apart, to within about its inverse.
-    far: float = 1e4  # [1e2 to 1e6]
-
-
-ROOTS = RootSearch()
+from movingfrf._basics.compiling import compiled
+from movingfrf.guideways.roots import ROOTS, inverse, squared, wavenumbers
 
 
 def polynomial(terms: dict[tuple[int, int], float]) -> FloatArray:
@@ -102,8 +77,8 @@ class Ratio:
         return Ratio(table_product(self.above, other.above), below)
 
 
-def in_moving_frame(table: NumberArray, speed: float, omega: ComplexArray) -> ComplexArray:
-    """Put p = i(ω − κv) into a table: one polynomial in κ for each frequency.
+def in_moving_frame(table: NumberArray, speed: float) -> ComplexArray:
+    """Put p = i(ω − κv) into a table.
 
     Parameters
     ----------
@@ -111,31 +86,35 @@ def in_moving_frame(table: NumberArray, speed: float, omega: ComplexArray) -> Co
         Coefficients.
     speed : float
         Speed of the observer [m/s].
-    omega : ndarray, shape (frequency,)
-        Frequency in the moving frame [rad/s].
 
     Returns
     -------
-    ndarray, shape (power of κ, frequency)
-        Coefficients, ascending, without leading powers that vanish. Here, and in all that follows, frequency is
-        the last axis: it is long, the others are short.
+    ndarray, shape (power of κ, power of iω)
+        Coefficients, without leading powers of κ that vanish.
     """
-    polynomials: ComplexArray = _expanded(table, 1j * omega, -1j * speed if abs(speed) > ROOTS.at_rest else 0.0)
-    return polynomials
+    return _expanded(table, -1j * speed if abs(speed) > ROOTS.at_rest else 0.0)
 
 
-def _expanded(table: NumberArray, constant: NumberArray, linear: complex) -> Any:
-    """Put p = constant + linear κ into a table, shape (power of κ, frequency)."""
+def _expanded(table: NumberArray, linear: complex) -> ComplexArray:
+    """Put p = s + linear κ into a table, shape (power of κ, power of s)."""
     powers_kappa, powers_p = table.shape
-    powers = [np.ones_like(constant), constant]
-    for _ in range(powers_p - 2):
-        powers.append(powers[-1] * constant)
-    expanded = np.zeros((powers_kappa + (powers_p - 1 if linear else 0), constant.size), constant.dtype)
+    expanded = np.zeros((powers_kappa + (powers_p - 1 if linear else 0), powers_p), complex)
     for a, b in np.argwhere(table).tolist():
         for j in range(b + 1 if linear else 1):
-            expanded[a + j] += (table[a, b] * comb(b, j) * linear**j) * powers[b - j]
+            expanded[a + j, b - j] += table[a, b] * comb(b, j) * linear**j
     degree = max((n for n, row in enumerate(expanded) if row.any()), default=0)
     return expanded[: degree + 1]
+
+
+def at_frequencies(expanded: NumberArray, s: NumberArray) -> Any:
+    """Polynomials in κ, shape (power of κ, frequency), of a table in κ and s at some s.
+
+    Here, and in all that follows, frequency is the last axis: it is long, the others are short.
+    """
+    powers = np.ones((expanded.shape[1], s.size), s.dtype)
+    for power in range(1, len(powers)):
+        np.multiply(powers[power - 1], s, out=powers[power])
+    return expanded @ powers
 
 
 def evaluated(coefficients: NumberArray, at: NumberArray) -> Any:
@@ -152,135 +131,152 @@ def slopes(coefficients: ComplexArray) -> ComplexArray:
     return coefficients[1:] * np.arange(1, len(coefficients))[:, None]
 
 
-def wavenumbers(coefficients: ComplexArray) -> ComplexArray:
-    """All roots κ of each polynomial [rad/m].
+class Waves(NamedTuple):
+    """Free waves of a guideway, as a moving FRF consists of them."""
 
-    A quartic without cubic term is solved in closed form, anything else by the eigenvalues of its companion
-    matrix (balanced by LAPACK, so that roots of very different size keep their digits). Newton steps then
-    bring each root to rounding accuracy.
+    kappa: ComplexArray  # (wave, frequency) wavenumber κ [rad/m]
+    weight: ComplexArray  # (wave, frequency) i N(κ)/D′(κ) [m/N]
+    forward: BoolArray  # (wave, frequency) whether it is met ahead of the source, or behind
+
+    def summed(self, ahead: FloatArray, derivative: int = 0) -> ComplexArray:
+        """Sum the waves that are met at some offsets.
+
+        Parameters
+        ----------
+        ahead : ndarray, shape (offset,)
+            Receiver minus source [m].
+        derivative : int
+            Order of the derivative with respect to x.
+
+        Returns
+        -------
+        ndarray, shape (offset, frequency)
+            Moving FRF [m/N/m^derivative].
+        """
+        kappa, weight, forward = self
+        if derivative:
+            weight = weight * (1j * kappa) ** derivative
+        if loops := compiled("guideways.compiled", kappa.size * ahead.size):
+            frf = np.empty((ahead.size, kappa.shape[1]), complex)
+            loops.summed(kappa, weight, forward, ahead, frf)
+            return frf
+        frf = np.zeros((ahead.size, kappa.shape[1]), complex)
+        for direction in (True, False):
+            here = np.flatnonzero((ahead >= 0) == direction)
+            for wave, belongs in enumerate(forward == direction):
+                # Which waves they are may change from frequency to frequency.
+                at: slice | IntArray = slice(None) if belongs.all() else np.flatnonzero(belongs)
+                some = weight[wave, at] if direction else -weight[wave, at]
+                for row in here if some.size else ():
+                    # Right at the source no wave has travelled.
+                    frf[row, at] += some * np.exp(1j * ahead[row] * kappa[wave, at]) if ahead[row] else some
+        return frf
+
+
+def waves(stiffness: Ratio, speed: float, omega: ComplexArray) -> Waves:
+    """Find the free waves of a guideway, and on which side of a source each is met.
+
+    The moving FRF is the inverse Fourier integral over κ, its contour closed. For receivers ahead of the source
+    the waves with Im κ > 0 count, behind those with Im κ < 0; how many there are on each side is found, never
+    assumed. A root on the real axis belongs to the side to which the limit ω − i0⁺ pushes it.
 
     Parameters
     ----------
-    coefficients : ndarray, shape (degree + 1, frequency)
-        Coefficients of ascending powers of κ; the last row has no zero.
+    stiffness : Ratio
+        Dynamic stiffness of the guideway [N/m²].
+    speed : float
+        Common speed of source and receiver [m/s].
+    omega : ndarray, shape (frequency,)
+        Frequency in the moving frame [rad/s], Im ω ≤ 0.
 
     Returns
     -------
-    ndarray, shape (degree, frequency)
-        The roots, in no particular order.
+    Waves
+        As many as the dynamic stiffness has zeros.
+
+    Raises
+    ------
+    SolveError
+        If the response is infinite: an undamped guideway at a cut-off frequency or a critical speed.
     """
-    roots = guess = _first_guess(coefficients)
-    slope = slopes(coefficients)
-    for _ in range(ROOTS.most_steps):
-        with np.errstate(all="ignore"):
-            step = evaluated(coefficients, roots) / evaluated(slope, roots)
-            # At a multiple root the slope vanishes and so does the need to move.
-            step = np.where(np.isfinite(step), step, 0.0)
-        roots = roots - step
-        settled = _squared(step) <= ROOTS.converged**2 * _squared(roots)
-        if settled.all():
-            return roots
-    far = np.flatnonzero(~settled.all(axis=0))
-    roots[:, far] = _all_at_once(coefficients[:, far], guess[:, far])
-    return roots
-
-
-def _all_at_once(coefficients: ComplexArray, roots: ComplexArray) -> ComplexArray:
-    """Roots that nearly meet, each pushed away by the others (Aberth and Ehrlich), shape (degree, frequency)."""
-    # From a conjugate pair no two real roots are ever reached, and from one place no two at all.
-    roots = roots * (1 + ROOTS.askew * np.arange(len(roots))[:, None])
-    for _ in range(ROOTS.most_steps_together):
-        with np.errstate(all="ignore"):
-            newton = evaluated(coefficients, roots) / evaluated(slopes(coefficients), roots)
-            gaps = roots[:, None] - roots
-            gaps[np.arange(len(roots)), np.arange(len(roots))] = np.inf
-            step = newton / (1 - newton * (1 / gaps).sum(axis=1))
-            step = np.where(np.isfinite(step), step, 0.0)
-        roots = roots - step
-        if (_squared(step) <= ROOTS.converged**2 * _squared(roots)).all():
-            break
-    return roots
-
-
-def _first_guess(coefficients: ComplexArray) -> ComplexArray:
-    """Roots to a few digits at least, shape (degree, frequency)."""
-    degree = len(coefficients) - 1
-    if degree == 4 and not coefficients[3].any():
-        monic = coefficients[:-1] / coefficients[-1]
-        return _quartic(monic[2], monic[1], monic[0])
-    for small in range(1, degree):
-        if _far_apart(np.abs(coefficients), small):
-            # At small v some roots run away to infinity, and a matrix that holds both kinds loses the others.
-            return np.concatenate([_first_guess(coefficients[: small + 1]), _first_guess(coefficients[small:])])
-    companion = np.zeros((coefficients.shape[1], degree, degree), complex)
-    companion[:, np.arange(1, degree), np.arange(degree - 1)] = 1.0
-    companion[:, :, -1] = -(coefficients[:-1] / coefficients[-1]).T
-    return np.ascontiguousarray(np.linalg.eigvals(companion).T)
-
-
-def _far_apart(sizes: FloatArray, small: int) -> bool:
-    """Whether the first so many roots are, at every frequency, far smaller than the others (Cauchy's bounds)."""
-    below = np.arange(small)[:, None]
-    above = np.arange(small + 1, len(sizes))[:, None]
-    if not sizes[small].all():
-        return False
-    largest = 2 * ((sizes[:small] / sizes[small]) ** (1 / (small - below))).max(axis=0)
-    smallest = 0.5 / ((sizes[small + 1 :] / sizes[small]) ** (1 / (above - small))).max(axis=0)
-    return bool((smallest > ROOTS.far * largest).all())
-
-
-def _quartic(p: ComplexArray, q: ComplexArray, r: ComplexArray) -> ComplexArray:
-    """Roots of x⁴ + p x² + q x + r by Ferrari's method, shape (4, frequency)."""
-    # Resolvent cubic m³ + p m² + (p²/4 − r) m − q²/8 = 0 by Cardano, depressed with m = y − p/3.
-    linear = -(p * p) / 12 - r
-    constant = (p * r) / 3 - p * p * p / 108 - q * q / 8
-    square_root = np.sqrt(constant * constant / 4 + linear * linear * linear / 27)
-    # The sign without cancellation, then the branch that gives the largest m: m = 0 would divide by zero.
-    opposed = constant.real * square_root.real + constant.imag * square_root.imag > 0
-    u = _cube_root(np.where(opposed, -square_root, square_root) - constant / 2)
+    above, below = (in_moving_frame(table, speed) for table in (stiffness.above, stiffness.below))
+    # What rounding may make of D, and what a change of ω does.
+    size = _expanded(np.abs(stiffness.above), abs(speed)).real
+    by_omega = in_moving_frame(_by_omega(stiffness.above), speed)
+    uncertain = ROOTS.rounding_errors * np.finfo(float).eps
     with np.errstate(all="ignore"):
-        partner = np.where(u == 0, 0.0, linear / (3 * u))
-    turns = np.exp(2j * np.pi / 3 * np.arange(3))[:, None]
-    m = turns * u - np.conj(turns) * partner - p / 3
-    m = np.take_along_axis(m, _squared(m).argmax(axis=0)[None], axis=0)[0]
-    root = np.sqrt(2 * m)
-    with np.errstate(all="ignore"):
-        quotient = np.where(root == 0, 0.0, 2 * q / root)
-    first = np.sqrt(-(2 * p + 2 * m + quotient))
-    second = np.sqrt(-(2 * p + 2 * m - quotient))
-    roots: ComplexArray = np.stack([root + first, root - first, second - root, -root - second])
-    roots *= 0.5
-    return roots
+        if loops := compiled("guideways.compiled", (len(above) - 1) * omega.size):
+            found, infinite = loops.waves(above, below, size, by_omega, omega, uncertain, ROOTS.numbers)
+        else:
+            found, infinite = _waves(above, below, size, by_omega, omega, uncertain)
+    bad = infinite | ~np.isfinite(found[1]).all(axis=0)
+    if bad.any():
+        frequency = omega[bad.argmax()] / (2 * np.pi)
+        raise SolveError(
+            f"the moving FRF is infinite at {frequency.real:.6g} Hz and {speed:.6g} m/s: an undamped resonance"
+            " of the guideway, or values beyond floating-point range"
+        )
+    return Waves(*found)
 
 
-def _cube_root(values: ComplexArray) -> ComplexArray:
-    """Principal cube root, in a third of the time of a complex power."""
-    size, angle = np.cbrt(np.abs(values)), np.arctan2(values.imag, values.real) / 3
-    root = np.empty_like(values)
-    root.real, root.imag = size * np.cos(angle), size * np.sin(angle)
-    return root
+def _waves(
+    above: ComplexArray,
+    below: ComplexArray,
+    size: FloatArray,
+    by_omega: ComplexArray,
+    omega: ComplexArray,
+    uncertain: float,
+) -> tuple[tuple[ComplexArray, ComplexArray, BoolArray], BoolArray]:
+    """Find waves, and at which frequencies two of them meet from both sides; `compiled.waves` in NumPy.
+
+    Parameters
+    ----------
+    above, below : ndarray, shape (power of κ, power of iω)
+        Numerator and denominator of the dynamic stiffness in the moving frame.
+    size : ndarray, shape (power of κ, power of iω)
+        Sum of the magnitudes of the terms of the numerator, in |κ| and |ω|.
+    by_omega : ndarray, shape (power of κ, power of iω)
+        Derivative of the numerator by ω.
+    omega : ndarray, shape (frequency,)
+        Frequency [rad/s].
+    uncertain : float
+        Share of that sum which counts as nothing.
+    """
+    s = 1j * omega
+    denominator = at_frequencies(above, s)
+    kappa = wavenumbers(denominator)
+    slope = evaluated(slopes(denominator), kappa)
+    weight = evaluated(at_frequencies(below, s), kappa) * inverse(slope)
+    side, infinite = kappa.imag, np.zeros(omega.size, bool)
+    doubt = uncertain * evaluated(at_frequencies(size, np.abs(omega)), np.sqrt(squared(kappa)))
+    # To first order D is D′ times the distance from a root.
+    doubtful = side * side * squared(slope) <= doubt * doubt
+    if doubtful.any():
+        # To second order D + D′x + D″x²/2 has a double root once D changes by D′²/2D″. For a pair κ ± iy that is
+        # y|D′|/2: neither of a pair is ever taken as real.
+        bend = evaluated(slopes(slopes(denominator)), kappa)
+        infinite = (doubtful & (squared(slope) <= 2 * doubt * np.abs(bend))).any(axis=0)
+        # Im κ(ω − i0⁺) has the sign of Re(∂D/∂ω ÷ ∂D/∂κ).
+        side = np.where(doubtful, (evaluated(at_frequencies(by_omega, s), kappa) / slope).real, side)
+    return (kappa, 1j * weight, side > 0), infinite
 
 
-def _squared(values: NumberArray) -> FloatArray:
-    """Squared magnitude; several times faster than the magnitude."""
-    return values.real**2 + values.imag**2
+def _by_omega(table: FloatArray) -> ComplexArray:
+    """Table of the derivative with respect to ω: that by p, times i."""
+    return 1j * table[:, 1:] * np.arange(1, table.shape[1])
 
 
 def residue_sum(
     stiffness: Ratio, ahead: FloatArray, speed: float, omega: ComplexArray, derivative: int
 ) -> ComplexArray:
-    """Evaluate the moving FRF by closing the contour of the inverse Fourier integral over κ.
-
-    For receivers ahead of the source the waves with Im κ > 0 count, behind those with Im κ < 0; how many
-    there are on each side is found, never assumed. A root on the real axis belongs to the side to which the
-    limit ω − i0⁺ pushes it.
+    """Evaluate the moving FRF as a sum of waves.
 
     Parameters
     ----------
     stiffness : Ratio
         Dynamic stiffness of the guideway [N/m²].
     ahead : ndarray, shape (offset,)
-        Receiver minus source [m], ascending and distinct.
+        Receiver minus source [m].
     speed : float
         Common speed [m/s].
     omega : ndarray, shape (frequency,)
@@ -300,67 +296,7 @@ def residue_sum(
     """
     if not omega.size:
         return np.zeros((ahead.size, 0), complex)
-    with np.errstate(all="ignore"):
-        denominator = in_moving_frame(stiffness.above, speed, omega)
-        kappa = wavenumbers(denominator)
-        slope: ComplexArray = evaluated(slopes(denominator), kappa)
-        weight = 1j * evaluated(in_moving_frame(stiffness.below, speed, omega), kappa) / slope
-        if derivative:
-            weight *= (1j * kappa) ** derivative
-        side, infinite = _sides(stiffness.above, speed, omega, kappa, slope)
-        frf = np.zeros((ahead.size, omega.size), complex)
-        for forward in (True, False):
-            here = (ahead >= 0) == forward
-            if here.any():
-                frf[here] = _one_side(kappa, weight, (side > 0) == forward, ahead[here])
-                if not forward:
-                    frf[here] *= -1.0
-    bad = infinite | ~np.isfinite(frf).all(axis=0)
-    if bad.any():
-        frequency = omega[bad.argmax()] / (2 * np.pi)
-        raise SolveError(
-            f"the moving FRF is infinite at {frequency.real:.6g} Hz and {speed:.6g} m/s: an undamped resonance"
-            " of the guideway, or values beyond floating-point range"
-        )
-    return frf
-
-
-def _sides(
-    table: FloatArray, speed: float, omega: ComplexArray, kappa: ComplexArray, slope: ComplexArray
-) -> tuple[FloatArray, BoolArray]:
-    """Tell on which side of the real axis each root lies (by sign), and at which frequencies two sides meet."""
-    side = kappa.imag
-    infinite: BoolArray = np.zeros(omega.size, bool)
-    size = evaluated(_expanded(np.abs(table), np.abs(omega), abs(speed)), np.abs(kappa))
-    uncertain = ROOTS.rounding_errors * np.finfo(float).eps * size
-    # To first order D is D′ times the distance from a root.
-    doubtful = side * side * _squared(slope) <= uncertain * uncertain
-    if not doubtful.any():
-        return side, infinite
-    # To second order D + D′x + D″x²/2 has a double root once D changes by D′²/2D″. For a pair κ ± iy that is
-    # y|D′|/2: neither of a pair is ever taken as real.
-    bend = evaluated(slopes(slopes(in_moving_frame(table, speed, omega))), kappa)
-    infinite |= (doubtful & (_squared(slope) <= 2 * uncertain * np.abs(bend))).any(axis=0)
-    # Im κ(ω − i0⁺) has the sign of Re(∂D/∂ω ÷ ∂D/∂κ).
-    by_omega = evaluated(in_moving_frame(_by_omega(table), speed, omega), kappa)
-    return np.where(doubtful, (by_omega / slope).real, side), infinite
-
-
-def _by_omega(table: FloatArray) -> ComplexArray:
-    """Table of the derivative with respect to ω: that by p, times i."""
-    return 1j * table[:, 1:] * np.arange(1, table.shape[1])
-
-
-def _one_side(kappa: ComplexArray, weight: ComplexArray, chosen: BoolArray, ahead: FloatArray) -> ComplexArray:
-    """Sum the chosen waves at the given offsets; which ones they are may change from frequency to frequency."""
-    total = np.zeros((ahead.size, kappa.shape[1]), complex)
-    for wave, belongs in enumerate(chosen):
-        at: slice | IntArray = slice(None) if belongs.all() else np.flatnonzero(belongs)
-        # Right at the source no wave has travelled; `ahead` is ascending, so that only its first entry can be zero.
-        resting = int(ahead[0] == 0)
-        total[:resting, at] += weight[wave, at]
-        total[resting:, at] += weight[wave, at] * np.exp(1j * kappa[wave, at] * ahead[resting:, None])
-    return total
+    return waves(stiffness, speed, omega).summed(ahead, derivative)
 
 
 ONE = polynomial({(0, 0): 1.0})

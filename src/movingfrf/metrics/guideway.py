@@ -11,8 +11,9 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
 from movingfrf._basics.checks import checking, uncovered
 from movingfrf._basics.door import mistaken
 from movingfrf.guideways.guideway import Guideway, findings_of, require_guideway, told
+from movingfrf.guideways.roots import wavenumbers
 from movingfrf.guideways.track import Track
-from movingfrf.guideways.waves import in_moving_frame, wavenumbers
+from movingfrf.guideways.waves import at_frequencies, in_moving_frame
 from movingfrf.results.labels import attributes, labelled
 
 if TYPE_CHECKING:
@@ -253,7 +254,7 @@ def wave_decay_rate(track: Track, frequency: ArrayLike) -> FloatArray:
         if not isinstance(track, Track):
             check.refuse("track", mistaken("track", track))
     omega: ComplexArray = (2 * np.pi * f).astype(complex)
-    kappa = wavenumbers(in_moving_frame(track.stiffness().above, 0.0, omega))
+    kappa = wavenumbers(at_frequencies(in_moving_frame(track.stiffness().above, 0.0), 1j * omega))
     return NEPER * np.abs(kappa.imag).min(axis=0)
 
 

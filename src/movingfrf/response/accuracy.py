@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf.response.influence import quotient
-from movingfrf.response.line import Given
+from movingfrf._basics.smooth import smoothest_step
+from movingfrf.response.line import TRANSFORM, Given, Line
 from movingfrf.response.sampling import SAMPLING, Excited
 from movingfrf.response.solve import solve
 from movingfrf.response.system import CoupledHistories, Response, System
@@ -61,11 +61,8 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
         Relative to the largest value of a channel.
     """
     line, beyond, begins = driven_by.line, driven_by.beyond, driven_by.omega.size // 2
-    force, motion = response.force.copy(), response.motion.copy()
-    for spectra in (force, motion):
-        spectra[..., :begins] = 0.0
-    of_force = beyond[: force.shape[-2]] * largest(line.records(force).values)
-    of_acceleration = beyond[-motion.shape[-2] :] * largest(line.records(motion, derivative=2).values)
+    of_force = beyond[: response.force.shape[-2]] * line.largest(response.force, begins)
+    of_acceleration = beyond[-response.motion.shape[-2] :] * line.largest(response.motion, begins, derivative=2)
     peaks = max(
         float(relative(part, largest(whole.values)).max(initial=0.0))
         for part, whole in ((of_force, histories.force), (of_acceleration, histories.acceleration))
@@ -74,18 +71,42 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
     return min(max(peaks, driven_by.missing), 1.0)
 
 
-def shares_beyond(response: Response, omega: ComplexArray, first: int) -> FloatArray:
-    """Share of each contact force and each acceleration, relative L2, from a frequency on; shape (output,)."""
-    outputs = np.concatenate([response.force[0], omega**2 * response.motion[0]])
-    energy = np.square(outputs.real) + np.square(outputs.imag)
-    of_kind = (slice(len(response.force[0])), slice(len(response.force[0]), None))
-    shares = [_share(energy[kind, first:].sum(axis=-1), energy[kind].sum(axis=-1)) for kind in of_kind]
-    return np.concatenate(shares)
+def hidden(
+    line: Line, spectra: ComplexArray, records: FloatArray, *, derivative: int = 0, least: float | None = None
+) -> FloatArray:
+    """Share of each channel above the Nyquist frequency of its record, root mean square over the record.
 
+    Parameters
+    ----------
+    line : Line
+        The record.
+    spectra : ndarray, shape (case, port, frequency)
+        Spectra of the channels: those of a record under a window, which do not tell it themselves.
+    records : ndarray, shape (case, port, time)
+        Their records, or those of derivatives.
+    derivative : int
+        Order of these.
+    least : float, optional
+        A channel counts as large as this share of the largest at least; None: a small one.
 
-def _share(part: FloatArray, whole: FloatArray) -> FloatArray:
-    """Square root of the quotient of two energies, each whole as large as a small share of the largest at least."""
-    return np.sqrt(quotient(part, np.maximum(whole, SAMPLING.smallest**2 * whole.max(initial=0.0))))
+    Returns
+    -------
+    ndarray, shape (port,)
+        Relative to the channel.
+    """
+    first = line.padded // 2 + 1
+    if spectra.shape[-1] <= first:
+        return np.zeros(spectra.shape[-2])
+    # A sharp cut would ring on, and the window raises what comes late.
+    above = smoothest_step((np.arange(spectra.shape[-1]) / first - 1.0) / TRANSFORM.fading_in)
+    part = line.records(spectra * above, derivative=derivative).values
+    # What happens right after the end shows before it, for as long as this cut rings.
+    part = part[..., : -round(2 / TRANSFORM.fading_in)] if line.samples > 4 / TRANSFORM.fading_in else part
+    # Sampled at whatever phase, what is above has the size that it has.
+    part, whole = rms(part), rms(records)
+    whole = np.maximum(whole, (SAMPLING.smallest if least is None else least) * whole.max(initial=0.0))
+    share: FloatArray = np.divide(part, whole, out=np.zeros_like(part), where=whole > 0)
+    return share.max(axis=0)
 
 
 def past_the_end(

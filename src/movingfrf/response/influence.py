@@ -14,7 +14,7 @@ import numpy as np
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
 from movingfrf.response.batches import BATCH
 from movingfrf.response.line import Line
-from movingfrf.response.truncation import EVERYWHERE, TRUNCATION, Truncation
+from movingfrf.response.truncation import TRUNCATION, Truncation
 
 
 class Sized(Protocol):
@@ -28,6 +28,11 @@ class Sized(Protocol):
     @property
     def ports(self) -> int:
         """Contacts, or loads and points."""
+        ...
+
+    @property
+    def kinds(self) -> tuple[int, ...]:
+        """How many outputs there are of each kind, one kind after the other."""
         ...
 
     def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
@@ -60,8 +65,8 @@ class Influence:
         All of the output.
     total : ndarray, shape (case, output)
         Energy of the whole output, contacts taken as independent.
-    alike : float
-        Share of the largest output's size that every output counts for at least; 0: each is of a kind of its own.
+    least : ndarray, shape (case, output)
+        Energy that every output counts for at least: a share of the largest of its kind.
     lines : int
         Number of the frequencies.
     """
@@ -70,13 +75,13 @@ class Influence:
     added: Share
     whole: Share
     total: FloatArray
-    alike: float
+    least: FloatArray
     lines: int
 
     @property
     def size(self) -> FloatArray:
         """Energy against which a part of an output counts, shape (case, output)."""
-        return np.maximum(self.total, self.alike**2 * self.total.max(axis=1, initial=0.0, keepdims=True))
+        return np.maximum(self.total, self.least)
 
     def error(self, kept: int, end: int) -> float:
         """Greatest relative change of any output if the road is rigid from frequency number `kept` to `end`."""
@@ -128,14 +133,13 @@ class Influence:
 def _bands(line: Line, truncation: float | None) -> IntArray:
     """Give the number of the first frequency of each band; one band begins beyond a stated truncation [Hz]."""
     edges = np.geomspace(1, line.size, TRUNCATION.bands + 1).astype(int)
-    cut = EVERYWHERE if truncation is None else Truncation(frequency=truncation)
-    beyond = min(cut.untouched(line.omega()), line.size - 1)
+    beyond = min(Truncation.stated(truncation).untouched(line.omega()), line.size - 1)
     starts = np.unique(np.r_[0, edges, beyond])
     return starts[starts < line.size]
 
 
 def influence(
-    system: Sized, line: Line, magnitudes: FloatArray, truncation: float | None, alike: float = 0.0
+    system: Sized, line: Line, magnitudes: FloatArray, truncation: float | None, alike: float
 ) -> Influence:
     """Estimate outputs, and the guideway's part in them, from the system at the middle of each band.
 
@@ -152,7 +156,7 @@ def influence(
     truncation : float, optional
         Stated truncation [Hz]: one band begins beyond it.
     alike : float
-        As in `Influence`.
+        Share of the size of the largest output of its kind that every output counts for at least.
 
     Returns
     -------
@@ -180,7 +184,17 @@ def influence(
             share.energy[..., here] = np.einsum("cob,ncb->nob", gain, np.sqrt(power[..., here])) ** 2
         total += np.einsum("cob,cob,ncb->no", gains[-1], gains[-1], power[..., here])
         first += some.size
-    return Influence(starts=starts, added=shares[0], whole=shares[1], total=total, alike=alike, lines=line.size)
+    ends = np.cumsum(system.kinds)
+    kinds = np.split(total, ends[:-1], axis=1)
+    least = [np.broadcast_to(kind.max(axis=1, initial=0.0, keepdims=True), kind.shape) for kind in kinds]
+    return Influence(
+        starts=starts,
+        added=shares[0],
+        whole=shares[1],
+        total=total,
+        least=alike**2 * np.concatenate(least, axis=1),
+        lines=line.size,
+    )
 
 
 def quotient(part: FloatArray, whole: FloatArray) -> FloatArray:

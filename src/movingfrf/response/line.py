@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory
 from movingfrf._basics.checks import checking
-from movingfrf._basics.smooth import memory, onward, smooth_step
+from movingfrf._basics.smooth import memory, onward, smooth_step, smoothest_step
 from movingfrf._basics.spline import cubic
 
 Values = TypeVar("Values", FloatArray, ComplexArray)
@@ -22,9 +22,16 @@ Values = TypeVar("Values", FloatArray, ComplexArray)
 class Transform:
     """What tunes the transform of records to complex frequency; in brackets, between what each number is safe."""
 
-    # What wraps around the end of the padded record comes back weaker by this factor; errors at the end of the
-    # padded record grow by its inverse, which is why it is not smaller.
-    wrap_around: float = 3e-5  # [1e-5 to 5e-5]
+    # What wraps around the end of the padded record comes back weaker by this factor at least; what happens at the
+    # beginning and spreads in time, as rounding does, grows by the other one by the end of the record.
+    wrap_around: float = 3e-6  # [1e-8 to 1e-5]
+    growth: float = 1e4  # [1e2 to 3e4]
+    # What a cut in frequency discards spreads over the inverse of the width of that cut: within so much of it, in
+    # radians, nothing may grow by more than e.
+    within: float = 0.45  # [0.1 to 0.5]
+    # Share of a frequency over which what lies above it fades in.
+    fading_in: float = 0.1  # [0.05 to 0.2]
+    least: int = 16  # steps of padding [8 to 64]
     # Share of the padding within which a record fades out after its end; the rest is for the response to die away.
     fades: float = 0.25  # [0.15 to 0.4]
     # So many samples before the end of a record tell how it goes on.
@@ -78,8 +85,9 @@ class Histories(NamedTuple):
 class Line:
     """A record in time and the complex frequencies that stand for it.
 
-    X(ω) = ∫ x(t) e^{−iωt} dt, evaluated along ω − iη (exponential window, Kausel and Roësset 1992): the
-    periodic repetition that a discrete transform implies is damped to `TRANSFORM.wrap_around` after one period.
+    X(ω) = ∫ x(t) e^{−iωt} dt, evaluated along ω − iη (exponential window, Kausel and Roësset 1992). The discrete
+    transform implies that all repeats itself. With η as large as the end of the record allows, a padding of a third
+    of the record damps that to `TRANSFORM.wrap_around`, and a shorter one where motion dies away.
     What drives a system is asked for in steps of its own, finer or coarser than those of the record.
 
     Parameters
@@ -88,10 +96,12 @@ class Line:
         Samples of the record.
     time_step : float
         Step of the record [s].
-    settling : float
-        Time that the padding must leave, at least, for the response to die away [s].
+    dying : float
+        Rate at which the slowest motion dies away once nothing drives it [1/s]; 0 if that is not known.
     fading : float
         Time in which what drives the system fades out past the end, at least [s].
+    cut : float
+        Width of the narrowest band over which a spectrum of the response is cut off [Hz]; inf if none is.
     points : int, optional
         Steps of the solution per period; None: those of the record.
 
@@ -105,8 +115,9 @@ class Line:
 
     samples: int
     time_step: float
-    settling: float = 0.0
+    dying: float = 0.0
     fading: float = 0.0
+    cut: float = np.inf
     points: int | None = None
 
     def __post_init__(self) -> None:
@@ -114,15 +125,32 @@ class Line:
         with checking(self) as check:
             check.whole("samples", self.samples, least=1)
             check.positive("time_step", self.time_step, "s")
-            check.not_negative("settling", self.settling, "s")
+            check.not_negative("dying", self.dying, "1/s")
             check.not_negative("fading", self.fading, "s")
 
     @property
+    def decay(self) -> float:
+        """Distance η of the line of evaluation from the real axis [rad/s]."""
+        return min(math.log(TRANSFORM.growth) / self.duration, TRANSFORM.within * 2 * math.pi * self.cut)
+
+    @property
+    def duration(self) -> float:
+        """Duration of the record [s]."""
+        return self.samples * self.time_step
+
+    @property
+    def needed(self) -> float:
+        """Time until all is over that would come back [s]: the record, the fading, and time to die away."""
+        over = self.duration + self.fading
+        # A record over which the window hardly falls is short, and may be small against what follows it.
+        weakened = math.log(TRANSFORM.growth / TRANSFORM.wrap_around) - self.decay * self.duration
+        dead = (self.dying * over + weakened) / (self.dying + self.decay)
+        return max(dead, over, self.duration + TRANSFORM.least * self.time_step)
+
+    @property
     def padded(self) -> int:
-        """Steps of the record per period: itself, time to settle, and what makes their number factorise."""
-        settled = max(self.settling / (1 - TRANSFORM.fades), self.settling + self.fading)
-        padding = max(self.samples // 8, int(settled / self.time_step), 16)
-        return int(scipy.fft.next_fast_len(self.samples + padding, real=True))
+        """Steps of the record per period: what is needed, and what makes their number factorise."""
+        return int(scipy.fft.next_fast_len(math.ceil(self.needed / self.time_step), real=True))
 
     @property
     def period(self) -> float:
@@ -133,11 +161,6 @@ class Line:
     def solved(self) -> int:
         """Steps of the solution per period."""
         return self.padded if self.points is None else self.points
-
-    @property
-    def decay(self) -> float:
-        """Distance η of the line of evaluation from the real axis [rad/s]."""
-        return float(-np.log(TRANSFORM.wrap_around)) / self.period
 
     @property
     def size(self) -> int:
@@ -298,8 +321,8 @@ class Line:
         Returns
         -------
         Histories
-            Records of shape (*case, port, time), and the largest value, as it wraps around, within a hundredth of
-            the period near its end (not at the very end, where the ripple that precedes a jump at t = 0 lies).
+            Records of shape (*case, port, time), and the largest value, as it wraps around, within an eighth of the
+            padding near its end.
         """
         ports = spectra.shape[:-1]
         rows = spectra.reshape(math.prod(ports), spectra.shape[-1])
@@ -307,7 +330,8 @@ class Line:
         values, wrapped = np.zeros((len(rows), samples)), np.zeros(len(rows))
         if not rows.size:
             return Histories(values.reshape(*ports, samples), wrapped.reshape(ports))
-        last = padded // 100 + 1
+        # Not at the very end of the padding, where the ripple lies that precedes a jump at t = 0.
+        last = max((padded - samples) // 8, 1)
         memory = self.scratch(finer) if scratch is None else scratch
         factor = (1j * self.omega(slice(rows.shape[1]))) ** derivative if derivative else None
         growth = np.exp(self.decay * step * np.arange(samples)) / step
@@ -316,8 +340,40 @@ class Line:
             block = folded(rows[some] if factor is None else rows[some] * factor, padded)
             periodic = np.fft.irfft(block, padded, out=memory[: len(block)])
             np.multiply(periodic[:, :samples], growth, out=values[some])
-            wrapped[some] = np.abs(periodic[:, -6 * last : -5 * last]).max(axis=1) / step
+            wrapped[some] = np.abs(periodic[:, -3 * last : -2 * last]).max(axis=1) / step
         return Histories(values.reshape(*ports, samples), wrapped.reshape(ports))
+
+    def largest(self, spectra: ComplexArray, first: int, *, derivative: int = 0) -> FloatArray:
+        """Largest values that spectra reach within the record from some frequency on, their envelope taken.
+
+        Parameters
+        ----------
+        spectra : ndarray, shape (*case, port, frequency)
+            As `records` takes them.
+        first : int
+            Number of the frequency from which on they count, fading in over a share of it.
+        derivative : int
+            Order of the derivative with respect to time.
+
+        Returns
+        -------
+        ndarray, shape (*case, port)
+            In the unit of the record.
+        """
+        # A sharp cut would ring on, and the window raises what comes late.
+        above = spectra[..., first:]
+        factor = smoothest_step(np.arange(above.shape[-1]) / max(TRANSFORM.fading_in * first, 1.0))
+        if derivative:
+            factor = factor * (1j * self.omega(slice(first, first + above.shape[-1]))) ** derivative
+        # Shifted down to zero frequency, twice as many samples as there are frequencies follow it.
+        samples = int(scipy.fft.next_fast_len(max(2 * above.shape[-1], 16)))
+        swinging = np.fft.ifft(above * factor, samples)
+        instants = np.arange(samples) * (self.period / samples)
+        # What begins at t = 0 abruptly is still everywhere before the next sample.
+        within = slice(*np.searchsorted(instants, [self.time_step, self.duration]).tolist())
+        size = np.abs(swinging[..., within]) * np.exp(self.decay * instants[within])
+        found: FloatArray = size.max(axis=-1, initial=0.0) * (2 * samples / self.period)
+        return found
 
 
 def together(parts: Values) -> Values:
@@ -395,15 +451,13 @@ class Pulse(NamedTuple):
         return inverse * (constant + inverse * (linear + 2.0 * inverse * square))
 
 
-def require_record(duration: float, settling: float, time_step: float, channels: int) -> None:
+def require_record(line: Line, channels: int) -> None:
     """Refuse a record that memory would not hold.
 
     Parameters
     ----------
-    duration, settling : float
-        Length of the record and of the padding behind it [s].
-    time_step : float
-        Step in time [s].
+    line : Line
+        The record.
     channels : int
         Histories that are computed: contacts and degrees of freedom, or loads and points.
 
@@ -413,6 +467,6 @@ def require_record(duration: float, settling: float, time_step: float, channels:
         With what is needed and what is free.
     """
     require_memory(
-        TRANSFORM.bytes_per_sample * channels * (duration + settling) / time_step,
-        f"a record of {duration:g} s in steps of {time_step:g} s",
+        TRANSFORM.bytes_per_sample * channels * line.needed / line.time_step,
+        f"a record of {line.duration:g} s in steps of {line.time_step:g} s",
     )

@@ -14,6 +14,7 @@ from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.spline import cubic
 from movingfrf.guideways.guideway import Guideway, findings_of, require_guideway, told
+from movingfrf.response.accuracy import hidden
 from movingfrf.response.batches import unthreaded
 from movingfrf.response.line import TRANSFORM, Given, Line, require_record, together
 from movingfrf.response.sampling import SAMPLING, Excited, excited
@@ -161,13 +162,11 @@ def carried(
         If a result is not finite.
     """
     guideway, speed, samples = system.guideway, system.speed, len(forces.sampled)
-    # What settles here is the guideway, in a time that is short beside that of any vehicle.
-    settling = samples * time_step
-    require_record(settling, settling, time_step, system.loads.size + system.points.size)
-    line = Line(samples=samples, time_step=time_step, settling=settling)
+    line = Line(samples=samples, time_step=time_step, cut=Truncation.stated(truncation).width)
+    require_record(line, system.ports)
     progress("sampling", 0.0)
     # What changes sooner than the finest steps tell counts as abrupt.
-    step = min(time_step, max(forces.finest, SAMPLING.per_station * line.period / SAMPLING.loads.most))
+    step = min(time_step, max(forces.finest, SAMPLING.loads.per_station * line.period / SAMPLING.loads.most))
     driven_by = excited(system, forces.given, line, step, truncation=np.inf, wanted=SAMPLING.loads)
     yielding = solve(system, driven_by.omega, driven_by.spectra, progress=progress).deflection
     progress("histories", 0.0)
@@ -180,7 +179,8 @@ def carried(
         error = find.relative(np.sqrt((left_out**2).mean(axis=-1)), np.sqrt((deflection**2).mean(axis=-1)))
         deflection, yielding = deflection - left_out, yielding * kept
     critical_speed = float(guideway.critical_speed)
-    hidden = find.not_shown(_beyond(yielding, line.padded // 2), ["deflection"], time_step)
+    above = hidden(line, together(yielding)[None], deflection[None], least=1.0).max(initial=0.0, keepdims=True)
+    not_shown = find.not_shown(above, ["deflection"], time_step)
     found = [
         *find.near_critical(abs(speed), critical_speed),
         *findings_of(guideway),
@@ -188,7 +188,7 @@ def carried(
         *find.beyond_truncation(truncation or 0.0, error),
         *find.jumps_within_a_step(_shifted(system, driven_by, forces, deflection), time_step),
         *find.loads_unresolved(driven_by.left_out, driven_by.step),
-        *hidden,
+        *not_shown,
     ]
     values = {
         "time": line.time,
@@ -197,7 +197,7 @@ def carried(
         "force": forces.sampled,
         "deflection": turned(deflection),
     }
-    if hidden:
+    if not_shown:
         # What is measured is taken from the response in the steps in which it was solved.
         finer = int(np.ceil(time_step / driven_by.step))
         times = time_step / finer * np.arange(samples * finer)
@@ -272,13 +272,6 @@ def _histories(driven_by: Excited, yielding: ComplexArray, finer: int = 1) -> tu
         # Nothing moves before: what is left out of a spectrum comes as a ripple on both sides.
         part[:, time <= begins + TRANSFORM.rounding * line.time_step] = 0.0
     return together(parts), wrapped.sum(axis=0)
-
-
-def _beyond(yielding: ComplexArray, shown: int) -> FloatArray:
-    """Share of the largest deflection, relative L2, past the frequencies that a record shows; shape (1,)."""
-    energy = np.square(np.abs(together(yielding)))
-    largest = energy.sum(axis=-1).max()
-    return np.sqrt(energy[:, shown + 1 :].sum(axis=-1).max(keepdims=True) / (largest or 1.0))
 
 
 def _shifted(system: Prescribed, driven_by: Excited, forces: Forces, deflection: FloatArray) -> float:

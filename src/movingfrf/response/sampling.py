@@ -15,7 +15,7 @@ import numpy as np
 import scipy.fft
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
-from movingfrf._basics.smooth import smooth_step
+from movingfrf._basics.smooth import smoothest_step
 from movingfrf.response.influence import Influence, Sized, influence
 from movingfrf.response.line import TRANSFORM, Given, Line
 from movingfrf.response.truncation import TRUNCATION, Truncation
@@ -25,12 +25,15 @@ from movingfrf.response.truncation import TRUNCATION, Truncation
 class Wanted:
     """How much is solved; in brackets, between what each number is safe."""
 
+    # Steps from station to station of a profile at first, or from sample to sample; twice as many, and so on, until
+    # they are enough.
+    per_station: float = 2.0  # [2 to 8]
     # What of any output may lie in the highest quarter of the frequencies, and beyond what is solved, relative L2.
     negligible: float  # [1e-6 to 3e-4]
     # The same beyond what is solved, where nothing changes abruptly.
     smooth: float  # [1e-12 to 3e-4]
-    # Where outputs are of a kind, one that is less than this share of the largest counts as if it were so much.
-    alike: float = 0.0  # [0 to 0.1]
+    # An output that is less than this share of the largest of its kind counts as if it were so much.
+    alike: float = 1e-3  # [1e-4 to 0.1]
     # Whether every abrupt change is told.
     told: bool = False
     # Most steps per period, for all ports together. [2**18 to 2**27: time and memory only]
@@ -41,10 +44,8 @@ class Wanted:
 class Sampling:
     """What tunes the steps of the solution; in brackets, between what each number is safe."""
 
-    # Steps from station to station of a profile at first; twice as many, and so on, until they are enough.
-    per_station: float = 4.0  # [2 to 8]
     road: Wanted = Wanted(negligible=3e-5, smooth=3e-5)
-    loads: Wanted = Wanted(negligible=1e-4, smooth=1e-9, alike=0.01, told=True, most=2**20)
+    loads: Wanted = Wanted(per_station=4.0, negligible=1e-4, smooth=1e-9, alike=0.01, told=True, most=2**20)
     # With more steps for all ports together than these, so many times as much is negligible, and tolerated.
     many: int = 2**20  # [2**17 to 2**22: time only]
     costly: float = 3.0  # [1 to 5]
@@ -156,7 +157,7 @@ def excited(
     ValueError
         If memory would not hold it.
     """
-    points = max(SAMPLING.per_station * line.period / step, SAMPLING.least)
+    points = max(wanted.per_station * line.period / step, SAMPLING.least)
     stated = None if solved_step is None else int(np.ceil(0.5 * line.period / solved_step)) + 1
     if stated is not None:
         points = max(points, 2.0 * stated)
@@ -181,7 +182,7 @@ def excited(
         if enough or stated is not None or 2 * points * ports > wanted.most:
             break
         # Before the closest stations are told apart what they hold does not fall.
-        apart = points > 8 * SAMPLING.per_station * line.period / (step if finest is None else finest)
+        apart = points > 8 * wanted.per_station * line.period / (step if finest is None else finest)
         falls = not apart or highest**2 <= SAMPLING.falling * energies[-3]
         if not falls and not (wanted.told and _stiffens(system, line, found)):
             break
@@ -192,12 +193,13 @@ def excited(
         ends = found.negligible_from(found.whole, limit, magnitudes)
         if passed > ends:
             ends = min(passed, found.negligible_from(found.whole, at_once, magnitudes))
+        ends = min(ends, int(line.size / (1 + fades)))
         count = min(int(ends * (1 + fades)) + 2, line.size)
     else:
         count = min(stated, line.size)
         ends = int(count / (1 + fades))
     # What a sharp cut discards would ring on, and the window raises what comes late.
-    fade = 1.0 - smooth_step((np.arange(count) - ends + 1) / max(count - ends, 1))
+    fade = 1.0 - smoothest_step((np.arange(count) - ends + 1) / max(count - ends, 1))
     if truncation is None:
         kept = min(found.negligible_from(found.added, TRUNCATION.negligible, magnitudes), count)
         # Where the response to rest alone is kept, some frequency below the next.

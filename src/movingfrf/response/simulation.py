@@ -11,13 +11,14 @@ import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
-from movingfrf.response.accuracy import past_the_end, shares_beyond, truncated, unresolved
+from movingfrf.response.accuracy import hidden, past_the_end, truncated, unresolved
 from movingfrf.response.batches import unthreaded
 from movingfrf.response.line import Given, Line, require_record
 from movingfrf.response.sampling import SAMPLING, Excited, excited
 from movingfrf.response.solve import solve
 from movingfrf.response.survey import SteadyState, survey
 from movingfrf.response.system import CoupledHistories, Response, System
+from movingfrf.response.truncation import Truncation
 from movingfrf.results.labels import attributes, labelled, turned
 from movingfrf.roughness.excitation import Excitation, Touch, excite
 from movingfrf.roughness.profile import Profile, require_profile
@@ -29,21 +30,17 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Settling:
-    """What tunes the padding in which the vehicle settles; in brackets, between what each number is safe."""
+class Fading:
+    """What tunes how a road fades out past the end of a record; in brackets, between what each number is safe."""
 
-    # To what the vehicle's slowest vibration should have decayed at the end of the padding.
-    decayed: float = 3e-2  # [1e-3 to 3e-2]
-    # The padding for it is at most so many times the duration, or so many of its cycles: what has not settled by
-    # then comes back weakened by the window.
-    durations: float = 2.0  # [1 to 16]
-    cycles: float = 20.0  # [10 to 100]
-    # The road fades out in so many times the ratio of its last level to its typical rate, that at so many instants.
+    # The road fades out in so many times the ratio of its last level to its typical rate, that at so many instants,
+    # and in so many times the duration at most.
     slower: float = 2.0  # [1 to 5]
+    durations: float = 2.0  # [1 to 16]
     looks: int = 1000  # [200 to 10 000]
 
 
-SETTLING = Settling()
+FADING = Fading()
 
 
 def simulate(
@@ -180,9 +177,12 @@ def driven(
     driven_by, response, histories, left_out = _solved(system, excitation, journey, progress)
     cut = truncated(system, driven_by, response, histories)
     steady, wheels = surveyed.steady, range(len(vehicle.contacts))
-    beyond = driven_by.line.padded // 2 + 1
-    hidden = find.not_shown(
-        shares_beyond(response, driven_by.omega, beyond),
+    above = (
+        hidden(driven_by.line, response.force, histories.force.values),
+        hidden(driven_by.line, response.motion, histories.acceleration.values, derivative=2),
+    )
+    not_shown = find.not_shown(
+        np.concatenate(above),
         [
             *(f"force of {vehicle.standing.listed([n])}" for n in wheels),
             *(f"acceleration of {name}" for name in vehicle.dof_names),
@@ -190,8 +190,8 @@ def driven(
         journey.time_step,
     )
     # What is measured, and whether contact is kept, is taken from the response in the steps in which it was solved.
-    finer = int(np.ceil(journey.time_step / driven_by.step)) if hidden else 1
-    fine = response.histories(driven_by.line, finer) if hidden else histories
+    finer = int(np.ceil(journey.time_step / driven_by.step)) if not_shown else 1
+    fine = response.histories(driven_by.line, finer) if not_shown else histories
     found = [
         *find.contact_lost(
             turned(steady.load[:, None] + fine.force.values[0]), journey.time_step / finer, vehicle.standing
@@ -202,7 +202,7 @@ def driven(
         *find.beyond_truncation(cut.frequency, cut.error),
         *find.unresolved(left_out, driven_by.step, stated=journey.solved_step is not None),
         *find.jumps_at_the_start(_jump(excitation, vehicle)),
-        *hidden,
+        *not_shown,
         *find.profile_ends(_guessed(system, excitation, journey, driven_by, histories), excitation.guessed),
         *find.graded(*excitation.slopes),
     ]
@@ -212,7 +212,7 @@ def driven(
         "static_load": steady.load,
         "static_deflection": steady.deflection,
     }
-    if hidden:
+    if not_shown:
         times = journey.time_step / finer * np.arange(journey.samples * finer)
         seen = excitation.elevation(journey.speed * times)
         values["solved_time"] = times
@@ -297,10 +297,10 @@ def _jump(excitation: Excitation, vehicle: Vehicle) -> float:
 
 def _fading(excitation: Excitation, journey: Journey) -> float:
     """Time in which the road may fade out past the end of the record [s]: no faster than it rises as a rule."""
-    travelled = np.linspace(0.0, journey.distance, SETTLING.looks)
+    travelled = np.linspace(0.0, journey.distance, FADING.looks)
     rate = np.sqrt(np.square(excitation.rate(travelled, journey.speed)).mean())
     level = np.abs(excitation.elevation(travelled[-1:])).max()
-    return float(min(SETTLING.slower * level, SETTLING.durations * journey.duration * rate) / (rate or 1.0))
+    return float(min(FADING.slower * level, FADING.durations * journey.duration * rate) / (rate or 1.0))
 
 
 def _guessed(
@@ -326,7 +326,7 @@ def _records(histories: CoupledHistories, steady: SteadyState, seen: FloatArray)
 
 
 def line_of(journey: Journey, vehicle: Vehicle, *, fading: float = 0.0) -> Line:
-    """Line of frequencies that stands for a journey, with padding for the vehicle to settle in.
+    """Line of frequencies that stands for a journey, with padding for the vehicle's motion to die away.
 
     Parameters
     ----------
@@ -347,11 +347,12 @@ def line_of(journey: Journey, vehicle: Vehicle, *, fading: float = 0.0) -> Line:
     ValueError
         If memory would not hold the result.
     """
-    settling = 0.0
-    for pole in vehicle.poles.tolist():
-        longest = max(SETTLING.durations * journey.duration, SETTLING.cycles * 2 * np.pi / abs(pole))
-        settled = -np.log(SETTLING.decayed) / -pole.real if pole.real < 0 else np.inf
-        settling = max(settling, min(settled, longest))
-    channels = len(vehicle.contacts) + len(vehicle.dof_names)
-    require_record(journey.duration, settling, journey.time_step, channels)
-    return Line(samples=journey.samples, time_step=journey.time_step, settling=settling, fading=fading)
+    line = Line(
+        samples=journey.samples,
+        time_step=journey.time_step,
+        dying=max(-float(vehicle.poles.real.max()), 0.0) if vehicle.poles.size else 0.0,
+        fading=fading,
+        cut=Truncation.stated(journey.truncation).width,
+    )
+    require_record(line, len(vehicle.contacts) + len(vehicle.dof_names))
+    return line

@@ -129,6 +129,12 @@ class System:
         """Contacts."""
         return self.dynamics.contacts
 
+    @property
+    def kinds(self) -> tuple[int, ...]:
+        """Contacts for forces and deflections, degrees of freedom for motions and accelerations."""
+        contacts, dofs = self.dynamics.contacts, self.dynamics.dofs
+        return contacts, contacts, dofs, dofs
+
     def at(self, omega: ComplexArray) -> Tables:
         """Evaluate both sides at some frequencies [rad/s]."""
         frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
@@ -226,6 +232,11 @@ class Prescribed:
     def ports(self) -> int:
         """Loads and points."""
         return self.loads.size + self.points.size
+
+    @property
+    def kinds(self) -> tuple[int, ...]:
+        """Points, all of them for deflections."""
+        return (self.points.size,)
 
     def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
         """Magnitude of the deflection per unit of each load, (load, point, frequency), all of it the guideway's."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.smooth import smooth_step
+from movingfrf._basics.smooth import smoothest_step
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,12 +46,22 @@ class Truncation:
     frequency: float = np.inf
     error: float = 0.0
 
+    @classmethod
+    def stated(cls, frequency: float | None) -> Truncation:
+        """Truncate where it is asked for [Hz]; None: nowhere."""
+        return cls() if frequency is None else cls(frequency=frequency)
+
+    @property
+    def width(self) -> float:
+        """Width of the band over which the guideway stiffens [Hz]; inf if it does nowhere."""
+        return TRUNCATION.stiffening * self.frequency or np.inf
+
     def taper(self, omega: ComplexArray) -> FloatArray:
         """Share of its compliance that the guideway has at some frequencies [rad/s]: 1, then less, then 0."""
         if self.frequency in (0.0, np.inf):
             return np.full(omega.size, 1.0 if self.frequency else 0.0)
         frequency, width = omega.real / (2 * np.pi), TRUNCATION.stiffening
-        return smooth_step((1.0 + width - frequency / self.frequency) / width)
+        return smoothest_step((1.0 + width - frequency / self.frequency) / width)
 
     def admitted(self, frf: ComplexArray, omega: ComplexArray) -> ComplexArray:
         """Let a guideway stiffen: moving FRFs, shape (…, frequency), times the taper."""

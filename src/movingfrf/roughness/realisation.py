@@ -77,8 +77,8 @@ def realise(
     length : float
         Length of the road [m].
     step : float, optional
-        Distance between stations [m], at most half of the shortest wave; by default an eighth, which leaves little
-        for the spline between stations to miss. The road is the same at any step.
+        Distance between stations [m], at most half of the shortest wave; by default a sixteenth, which leaves
+        little for the spline between stations to miss. The road is the same at any step.
     seed : int or sequence of int
         Seed of the phases: the same seed gives the same road. Several: one path each; equal seeds give equal paths,
         different ones paths without anything in common.
@@ -163,8 +163,8 @@ def realise_laplace(
     length : float
         Length of the road [m].
     step : float, optional
-        Distance between stations [m], at most half of the shortest wave; by default an eighth, which leaves little
-        for the spline between stations to miss. The road is the same at any step.
+        Distance between stations [m], at most half of the shortest wave; by default a sixteenth, which leaves
+        little for the spline between stations to miss. The road is the same at any step.
     seed : int or sequence of int
         Seed of variances and noise: the same seed gives the same road. Several: one path each.
     start : float
@@ -257,10 +257,10 @@ def _asked(
     across: ArrayLike | None,
     coherence: Coherence | None,
 ) -> _Asked:
-    # Eight stations to the shortest wave: the spline between them misses little.
-    eighth = 0.125 / spectrum.band[1] if is_spectrum(check, spectrum) else 1.0
+    # Sixteen stations to the shortest wave: the images of the spline between them are next to nothing.
+    sixteenth = 0.0625 / spectrum.band[1] if is_spectrum(check, spectrum) else 1.0
     length = check.positive("length", length, "m")
-    step = check.positive("step", eighth if step is None else step, "m")
+    step = check.positive("step", sixteenth if step is None else step, "m")
     several = isinstance(seed, (list, tuple))
     seeds = [check.whole("seed", number) for number in (seed if isinstance(seed, (list, tuple)) else [seed])]
     if not seeds:

@@ -10,7 +10,7 @@ from typing import Any
 from movingfrf._basics.checks import Fault, ParameterError, checking, nearest, shown, spelt
 from movingfrf._basics.toml_file import tables_of, text_of
 from movingfrf.guideways.sampled import SampledGuideway
-from movingfrf.response.line import require_record
+from movingfrf.response.line import Line, require_record
 from movingfrf.response.simulation import line_of
 from movingfrf.roughness.excitation import require_cover
 from movingfrf.scenarios.kind import Family, Key, Kind
@@ -175,7 +175,7 @@ class _Builder:
             channels = loads.positions.size + loads.observe.size
             self._attempt(
                 "run:",
-                lambda: require_record(journey.duration, journey.duration, journey.time_step, channels),
+                lambda: require_record(Line(samples=journey.samples, time_step=journey.time_step), channels),
             )
         return None if self.faults else Passage(guideway=made["guideway"], loads=loads, journey=journey)
 

@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
+from movingfrf._basics.compiling import numba_is_there
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.results.labels import attributes, labelled
 from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.stepping.coupled import seen_in_time
 from movingfrf.stepping.half_step import HalfStep
-from movingfrf.stepping.marching import STRIDE, numba_is_there
+from movingfrf.stepping.marching import STRIDE
 from movingfrf.stepping.requirements import require_kind
 from movingfrf.stepping.schemes import SCHEMES
 from movingfrf.stepping.tie import stiffness_at_rest, tie_of

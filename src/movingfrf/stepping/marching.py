@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import SolveError
+from movingfrf._basics.compiling import numba_is_there
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.stepping.exchange import SOLVED, Iteration, exchanged
 from movingfrf.stepping.factors import BandSolver, SparseSolver, bands_of, half_width, indefinite, solver
@@ -41,17 +41,11 @@ class Stride:
     work: int = 20_000_000  # unknowns times steps [1e6 to 2e7]
     # In NumPy, entries of interpolating rows, which are held for all these steps at once.
     entries: int = 1_000_000  # [1e4 to 1e7]
+    # Unknowns that the compiled band solver needs at least: three from either end, and three in the middle.
+    fewest_unknowns: int = 9
 
 
 STRIDE = Stride()
-
-# Unknowns that the compiled band solver needs at least: three from either end, and three in the middle.
-FEWEST_UNKNOWNS = 9
-
-
-def numba_is_there() -> bool:
-    """Tell whether the compiled loops can be used."""
-    return find_spec("numba") is not None
 
 
 @dataclass(slots=True)
@@ -268,7 +262,7 @@ class March:
             guideway.mesh is not None
             and isinstance(rows, CubicRows)
             and rows.mesh is guideway.mesh
-            and guideway.dofs >= FEWEST_UNKNOWNS
+            and guideway.dofs >= STRIDE.fewest_unknowns
             and max(half_width(matrix) for matrix in (guideway.mass, guideway.damping, guideway.stiffness)) <= 3
         )
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import nearest, spelt
+from movingfrf._basics.compiling import numba_is_there
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.foundations import OnMass
 from movingfrf.guideways.guideway import Guideway
@@ -34,7 +35,6 @@ from movingfrf.stepping.duhamel import convolved, duhamel_loads
 from movingfrf.stepping.exchange import SOLVED, Iteration
 from movingfrf.stepping.finite_guideway import FiniteGuideway
 from movingfrf.stepping.impulse import CANCELLING, struck_track
-from movingfrf.stepping.marching import numba_is_there
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from movingfrf._basics.compiling import numba_is_there
 from movingfrf._basics.version import VERSION
 from movingfrf._basics.wording import count, in_both_units, number, plain
 from movingfrf.reports.axes import legend_above
@@ -18,7 +19,6 @@ from movingfrf.reports.tables import Column, Row, Setting, Table
 from movingfrf.scenarios.scenario import Drive
 from movingfrf.scenarios.stepped import stands_still
 from movingfrf.stepping.finite_guideway import FiniteGuideway
-from movingfrf.stepping.marching import numba_is_there
 from movingfrf.studies.comparison.comparison import Comparison, Point, ratios
 from movingfrf.studies.comparison.convergence import TARGETS, refined
 from movingfrf.studies.comparison.methods import FOR_LOADS, FOR_VEHICLE, compiles

@@ -111,7 +111,7 @@ def _figure_05(
     figure, (response, spectrum, sides, error) = canvas(2, 2, 4.8)
     highest = float(frequency[-1])
     step = 2.5e-4  # of the closed form's impulse response [s]: fine enough for the eye
-    record = Line(samples=int(1.0 / step), time_step=step, settling=1.0)
+    record = Line(samples=int(1.0 / step), time_step=step, cut=1.0)
     impulse = record.records(study.guideway.moving_frf(0.0, study.speed, record.omega())).values
     struck_time = np.arange(len(study.struck.samples)) * study.struck.time_step
     curve(response, record.time, 1e9 * impulse, STROKES.black, "closed form")

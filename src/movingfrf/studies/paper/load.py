@@ -380,7 +380,7 @@ def costs(study: Study) -> Outcome:
     """Table 1: multiplications and times of three methods, and their errors."""
     case = scenario("load")
     step, samples = case.journey.time_step, case.journey.samples
-    line = Line(samples=samples, time_step=step, settling=samples * step)
+    line = Line(samples=samples, time_step=step)
     kept = Truncation(frequency=STATED.truncation).reach(line.omega())
     unpadded, memory = round(STATED.truncation * samples * step) + 1, len(study.struck.samples)
     n = study.finite.dofs

@@ -8,7 +8,7 @@ matrices, weights of an integral, the moving FRF itself, sines and cosines of a 
 from __future__ import annotations
 
 from movingfrf._basics.checks import checking
-from movingfrf.stepping.marching import FEWEST_UNKNOWNS
+from movingfrf.stepping.marching import STRIDE
 
 
 def newmark_full(dofs: int, steps: int) -> int:
@@ -103,7 +103,7 @@ def newmark_banded(dofs: int, steps: int) -> int:
     149140000
     """
     _require_whole(steps=steps)
-    _require_whole(FEWEST_UNKNOWNS, dofs=dofs)
+    _require_whole(STRIDE.fewest_unknowns, dofs=dofs)
     travelled, functions, load, deflection = 2, 2 * 20, 8, 2 * 4
     width = 3  # half-width of the bands; the compiled loop, which has it too, cannot be read without numba
     # At either end of the matrix, three rows lack 3, 2 and 1 of the entries that the others have.

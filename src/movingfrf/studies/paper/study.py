@@ -165,7 +165,8 @@ class Study:
         """
         journey = scenario(name).journey
         samples, step = journey.samples, journey.time_step
-        line = Line(samples=samples, time_step=step, settling=samples * step)
+        # The sharper the cut, the longer it rings: all along the record.
+        line = Line(samples=samples, time_step=step, cut=1.0 / (samples * step))
         forces = line.spectra(line.given(history(name).T))[0]
         spectrum = guideway.moving_frf(0.0, journey.speed, line.omega()) * forces
         kept = np.arange(line.size) / line.period

@@ -1,0 +1,88 @@
+"""Whether loops run compiled, by numba (the extra `fast`), or in NumPy: compiled where loading it pays."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from types import ModuleType
+
+from movingfrf._basics.ending import is_command
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Patience:
+    """How much is done in NumPy before numba is loaded, which takes some 0.4 s.
+
+    In brackets, between what each number is safe.
+
+    A unit of work is one wave, or one vibration of a vehicle, at one frequency: NumPy takes 0.1 to 0.2 µs longer
+    for it. Work is counted rather than timed, so that the same input takes the same way.
+    """
+
+    # A process that imports the package goes on, as a rule, with more of what it has begun.
+    session: int = 10_000  # [0 to 1e6: time only]
+    # A command ends when it has done what it was asked for: loading must pay for itself.
+    command: int = 3_000_000  # [1e6 to 1e7: time only]
+
+
+PATIENCE = Patience()
+
+# Work done so far, and what is chosen: True and False for always and never, None for where it pays.
+_done: list[int] = [0]
+_chosen: list[bool | None] = [None]
+
+
+def numba_is_there() -> bool:
+    """Tell whether loops can be compiled."""
+    try:
+        return find_spec("numba") is not None
+    except ImportError:
+        return False
+
+
+def compiled(module: str, work: int) -> ModuleType | None:
+    """Give a module of compiled loops if they shall be used.
+
+    Parameters
+    ----------
+    module : str
+        Its name below the package.
+    work : int
+        What is to be done: waves or vibrations times frequencies.
+
+    Returns
+    -------
+    module or None
+        None: do it in NumPy, with the same result but for rounding.
+    """
+    if _chosen[0] is None and "numba" not in sys.modules:
+        if not numba_is_there():
+            return None
+        _done[0] += work
+        if _done[0] <= (PATIENCE.command if is_command() else PATIENCE.session):
+            return None
+    return _loaded(module) if _chosen[0] is not False else None
+
+
+@cache
+def _loaded(module: str) -> ModuleType | None:
+    """Load compiled loops; None where numba does not load, or has no place for what it compiles."""
+    try:
+        return import_module(f"movingfrf.{module}")
+    except (ImportError, RuntimeError, OSError):
+        return None
+
+
+@contextmanager
+def compiling(choice: bool | None) -> Iterator[None]:
+    """Choose, while the block lasts, whether loops are compiled: always, never, or (None) where it pays."""
+    before, _chosen[0] = _chosen[0], choice
+    try:
+        yield
+    finally:
+        _chosen[0] = before

@@ -1,0 +1,190 @@
+"""Waves frequency by frequency, compiled by numba (the extra `fast`); `waves` and `roots` have them in NumPy."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from movingfrf._basics.loops import loop
+
+
+@loop
+def _squared(value):
+    return value.real * value.real + value.imag * value.imag
+
+
+@loop
+def _over(above, below):
+    """Quotient: complex division, but for what it does beyond 1e±150, takes most of the time otherwise."""
+    share = 1.0 / _squared(below)
+    return complex(
+        (above.real * below.real + above.imag * below.imag) * share,
+        (above.imag * below.real - above.real * below.imag) * share,
+    )
+
+
+@loop
+def _at(expanded, s, coefficients):
+    """Polynomial in κ of a table in κ and s."""
+    powers = expanded.shape[1]
+    for a in range(expanded.shape[0]):
+        value = expanded[a, powers - 1]
+        for b in range(powers - 2, -1, -1):
+            value = value * s + expanded[a, b]
+        coefficients[a] = value
+
+
+@loop
+def _value(coefficients, at):
+    value = coefficients[coefficients.size - 1]
+    for a in range(coefficients.size - 2, -1, -1):
+        value = value * at + coefficients[a]
+    return value
+
+
+@loop
+def _both(coefficients, at):
+    """Value and slope."""
+    value, slope = coefficients[coefficients.size - 1], 0j
+    for a in range(coefficients.size - 2, -1, -1):
+        slope = slope * at + value
+        value = value * at + coefficients[a]
+    return value, slope
+
+
+@loop
+def _on_circles(coefficients, roots):
+    """Place roots on circles whose radii the Newton polygon of the magnitudes gives.
+
+    D. A. Bini, Numerical computation of polynomial zeros by means of Aberth's method, Numerical Algorithms 13,
+    1996.
+    """
+    degree = roots.size
+    size = np.empty(degree + 1)
+    for a in range(degree + 1):
+        squared = _squared(coefficients[a])
+        size[a] = 0.5 * math.log(squared) if squared > 0.0 else -np.inf
+    first = 0
+    while first < degree:
+        steepest, last = -np.inf, first + 1
+        for a in range(first + 1, degree + 1):
+            rise = (size[a] - size[first]) / (a - first)
+            # A root at zero has no finite logarithm.
+            if size[first] > -np.inf and rise >= steepest:
+                steepest, last = rise, a
+        radius = math.exp(-steepest) if size[first] > -np.inf else 0.0
+        for root in range(first, last):
+            # Off every symmetry.
+            turn = 2 * math.pi * ((root - first) / (last - first) + first / degree) + 0.7
+            roots[root] = complex(radius * math.cos(turn), radius * math.sin(turn))
+        first = last
+
+
+@loop
+def _settle(coefficients, roots, others, search):
+    """Move all roots until they stay where they are; `others` is scratch, `search` what tunes it."""
+    near, settled_within, most, patience, askew = search
+    degree = roots.size
+    for number in range(1, most + 1):
+        others[:] = 0.0
+        for n in range(degree):
+            for m in range(n):
+                apart = roots[n] - roots[m]
+                share = 1.0 / _squared(apart)
+                # From one place no two part by themselves.
+                if share < np.inf:
+                    pull = complex(apart.real * share, -apart.imag * share)
+                    others[n] += pull
+                    others[m] -= pull
+        settled = True
+        for n in range(degree):
+            value, slope = _both(coefficients, roots[n])
+            step = _over(value, slope - value * others[n])
+            # At a multiple root the slope vanishes and so does the need to move.
+            if not _squared(step) < np.inf:
+                step = 0j
+            roots[n] -= step
+            size, moved = _squared(roots[n]), _squared(step)
+            left = moved * (_squared(others[n]) * size + 1.0)
+            if not (moved <= near * size and left * left * moved <= settled_within * size * size * size):
+                settled = False
+        if settled:
+            return
+        if number % patience == 0:
+            for n in range(degree):
+                roots[n] *= 1.0 + askew * n
+
+
+@loop
+def waves(above, below, size, by_omega, omega, uncertain, search):
+    """Find waves, and at which frequencies two of them meet from both sides; as `waves._waves`."""
+    degree, count = above.shape[0] - 1, omega.size
+    kappa, weight = np.empty((degree, count), np.complex128), np.empty((degree, count), np.complex128)
+    forward, infinite = np.empty((degree, count), np.bool_), np.zeros(count, np.bool_)
+    denominator, numerator = np.empty(degree + 1, np.complex128), np.empty(below.shape[0], np.complex128)
+    derivative, others = np.empty(degree, np.complex128), np.empty(degree, np.complex128)
+    magnitude, change = np.empty(size.shape[0]), np.empty(by_omega.shape[0], np.complex128)
+    roots, before = np.empty(degree, np.complex128), np.empty((2, degree), np.complex128)
+    for at in range(count):
+        s = complex(-omega[at].imag, omega[at].real)
+        _at(above, s, denominator)
+        _at(below, s, numerator)
+        _at(size, math.sqrt(_squared(s)), magnitude)
+        if at == 0:
+            _on_circles(denominator, roots)
+        else:
+            # Roots go on as they have over three frequencies before, where these lie evenly; else over one or two.
+            gap = omega[at].real - omega[at - 1].real
+            run = 0
+            while (
+                run < min(at - 1, 2)
+                and abs(omega[at - 1 - run].real - omega[at - 2 - run].real - gap) <= 1e-3 * gap
+            ):
+                run += 1
+            for n in range(degree):
+                now = roots[n]
+                if run == 2:
+                    roots[n] += 2.0 * (now - before[0, n]) - (before[0, n] - before[1, n])
+                elif run == 1:
+                    roots[n] += now - before[0, n]
+                before[1, n] = before[0, n]
+                before[0, n] = now
+        _settle(denominator, roots, others, search)
+        for a in range(degree):
+            derivative[a] = (a + 1) * denominator[a + 1]
+        for n in range(degree):
+            root = roots[n]
+            slope = _value(derivative, root)
+            kappa[n, at] = root
+            weight[n, at] = 1j * _over(_value(numerator, root), slope)
+            side = root.imag
+            doubt = uncertain * _value(magnitude, math.sqrt(_squared(root)))
+            if side * side * _squared(slope) <= doubt * doubt:
+                bend = 0j
+                for a in range(degree - 1, 0, -1):
+                    bend = bend * root + a * derivative[a]
+                if _squared(slope) <= 2.0 * doubt * math.sqrt(_squared(bend)):
+                    infinite[at] = True
+                _at(by_omega, s, change)
+                side = _over(_value(change, root), slope).real
+            forward[n, at] = side > 0.0
+    return (kappa, weight, forward), infinite
+
+
+@loop
+def summed(kappa, weight, forward, ahead, frf):
+    """Sum the waves that are met at each offset; as `Waves.summed`."""
+    for row in range(ahead.size):
+        offset = ahead[row]
+        for at in range(kappa.shape[1]):
+            total = 0j
+            for n in range(kappa.shape[0]):
+                if forward[n, at] == (offset >= 0.0):
+                    if offset == 0.0:
+                        total += weight[n, at]
+                    else:
+                        left = math.exp(-kappa[n, at].imag * offset)
+                        turn = kappa[n, at].real * offset
+                        total += weight[n, at] * complex(left * math.cos(turn), left * math.sin(turn))
+            frf[row, at] = total if offset >= 0.0 else -total
