@@ -11,8 +11,8 @@ FAULTS = [
         "no convective terms", "guideways/waves.py", "for j in range(b + 1 if linear else 1)", "for j in range(1)"
     ),
     Fault("binomial missing", "guideways/waves.py", "comb(b, j) *", "1.0 *"),
-    Fault("sides exchanged", "guideways/waves.py", "(ahead >= 0) == forward", "(ahead < 0) == forward"),
-    Fault("two waves on each side", "guideways/waves.py", "(side > 0) == forward", "(kappa.real > 0) == forward"),
+    Fault("sides exchanged", "guideways/waves.py", "(ahead >= 0) == ahead", "(ahead < 0) == ahead"),
+    Fault("two waves on each side", "guideways/waves.py", "weight, side > 0)", "weight, kappa.real > 0)"),
     Fault("sign behind", "guideways/waves.py", "frf[here] *= -1.0", "frf[here] *= 1.0"),
     Fault(
         "undamped limit from above",

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import comb
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -298,31 +298,74 @@ def residue_sum(
     SolveError
         If the response is infinite: an undamped guideway at a cut-off frequency or a critical speed.
     """
+    kappa, weight, forward = waves(stiffness, speed, omega)
+    if derivative:
+        weight = weight * (1j * kappa) ** derivative
+    frf = np.zeros((ahead.size, omega.size), complex)
+    for ahead_of_it in (True, False):
+        here = (ahead >= 0) == ahead_of_it
+        if here.any():
+            frf[here] = _one_side(kappa, weight, forward == ahead_of_it, ahead[here])
+            if not ahead_of_it:
+                frf[here] *= -1.0
+    _require_finite(np.isfinite(frf).all(axis=0), speed, omega)
+    return frf
+
+
+class Waves(NamedTuple):
+    """Free waves of a guideway at some frequencies, each of shape (wave, frequency).
+
+    G(ξ ≥ 0) = Σ weight e^{iκξ} over those that are forward, G(ξ < 0) = −Σ weight e^{iκξ} over the others.
+    """
+
+    kappa: ComplexArray  # wavenumbers [rad/m]
+    weight: ComplexArray  # residues of the moving FRF [m/N]
+    forward: BoolArray  # whether a wave counts ahead of the source
+
+
+def waves(stiffness: Ratio, speed: float, omega: ComplexArray) -> Waves:
+    """Find the waves of a guideway, and on which side of a source each of them counts.
+
+    Parameters
+    ----------
+    stiffness : Ratio
+        Dynamic stiffness of the guideway [N/m²].
+    speed : float
+        Common speed [m/s].
+    omega : ndarray, shape (frequency,)
+        Frequency in the moving frame [rad/s], Im ω ≤ 0.
+
+    Returns
+    -------
+    Waves
+        All of them.
+
+    Raises
+    ------
+    SolveError
+        If the response is infinite: an undamped guideway at a cut-off frequency or a critical speed.
+    """
     if not omega.size:
-        return np.zeros((ahead.size, 0), complex)
+        nothing = np.zeros((0, 0), complex)
+        return Waves(nothing, nothing, nothing.real > 0)
     with np.errstate(all="ignore"):
         denominator = in_moving_frame(stiffness.above, speed, omega)
         kappa = wavenumbers(denominator)
         slope: ComplexArray = evaluated(slopes(denominator), kappa)
         weight = 1j * evaluated(in_moving_frame(stiffness.below, speed, omega), kappa) / slope
-        if derivative:
-            weight *= (1j * kappa) ** derivative
         side, infinite = _sides(stiffness.above, speed, omega, kappa, slope)
-        frf = np.zeros((ahead.size, omega.size), complex)
-        for forward in (True, False):
-            here = (ahead >= 0) == forward
-            if here.any():
-                frf[here] = _one_side(kappa, weight, (side > 0) == forward, ahead[here])
-                if not forward:
-                    frf[here] *= -1.0
-    bad = infinite | ~np.isfinite(frf).all(axis=0)
-    if bad.any():
-        frequency = omega[bad.argmax()] / (2 * np.pi)
+    _require_finite(~infinite & np.isfinite(weight).all(axis=0), speed, omega)
+    return Waves(kappa, weight, side > 0)
+
+
+def _require_finite(good: BoolArray, speed: float, omega: ComplexArray) -> None:
+    """Refuse a response that is infinite at some frequencies."""
+    if not good.all():
+        frequency = omega[good.argmin()] / (2 * np.pi)
         raise SolveError(
             f"the moving FRF is infinite at {frequency.real:.6g} Hz and {speed:.6g} m/s: an undamped resonance"
             " of the guideway, or values beyond floating-point range"
         )
-    return frf
 
 
 def _sides(

@@ -9,6 +9,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import SolveError
+from movingfrf.response.along import Along, determinants
 from movingfrf.response.system import System, Tables
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -120,7 +121,7 @@ def stretches(path: ComplexArray, most: int) -> list[ComplexArray]:
     return [path[first : first + steps + 1] for first in range(0, path.size - 1, steps)]
 
 
-def growing_vibrations(system: System, along_axis: Iterable[Tables]) -> int:
+def growing_vibrations(system: System, along_axis: Iterable[Tables | Along]) -> int:
     """Count the vibrations of the coupled system that grow in time, conjugate pairs counted twice.
 
     Every zero of det(I + D G) with Im ω < 0 turns the phase of the determinant by one full circle along the
@@ -130,7 +131,7 @@ def growing_vibrations(system: System, along_axis: Iterable[Tables]) -> int:
     ----------
     system : System
         Vehicle and road.
-    along_axis : iterable of Tables
+    along_axis : iterable of Tables or Along
         Both sides at the frequencies of `along_the_axis`, stretch by stretch.
 
     Returns
@@ -142,29 +143,45 @@ def growing_vibrations(system: System, along_axis: Iterable[Tables]) -> int:
     return max(round(-turned / np.pi), 0)
 
 
-def _turned(system: System, along_axis: Tables) -> float:
+def _turned(system: System, along_axis: Tables | Along) -> float:
     """Angle by which the determinant turns along a stretch of the path [rad]."""
-    path, matrices = along_axis.omega, _stacked(along_axis)
+    path, pieces = along_axis.omega, _stacked(along_axis)
     first, middle, last = path[:-1:2], path[1::2], path[2::2]
-    at_first, at_middle, at_last = matrices[:-1:2], matrices[1::2], matrices[2::2]
+    at_first, at_middle, at_last = ([piece[some::2][: middle.size] for piece in pieces] for some in range(3))
+    # How often a piece, and with it each of its factors, counts.
+    counts = np.concatenate([np.full(piece.shape[1], times) for times, piece in along_axis.pieces])
     turned = 0.0
     for _ in range(CONTOUR.halvings):
-        factors = np.hstack([_factors(at_first, at_middle), _factors(at_middle, at_last)])
-        rough = (np.abs(factors - 1) > CONTOUR.largest_change).any(axis=1)
-        turned += np.angle(factors[~rough]).sum()
+        factors = np.stack([_all_factors(at_first, at_middle), _all_factors(at_middle, at_last)])
+        rough = (np.abs(factors - 1) > CONTOUR.largest_change).any(axis=(0, 2))
+        turned += (np.angle(factors[:, ~rough]) @ counts).sum()
         first, last = np.r_[first[rough], middle[rough]], np.r_[middle[rough], last[rough]]
-        at_first, at_last = np.r_[at_first[rough], at_middle[rough]], np.r_[at_middle[rough], at_last[rough]]
+        at_first, at_last = (
+            [np.r_[one[rough], other[rough]] for one, other in zip(*ends, strict=True)]
+            for ends in ((at_first, at_middle), (at_middle, at_last))
+        )
         if not 0 < first.size < CONTOUR.most_intervals:
             break
         middle = 0.5 * (first + last)
         at_middle = _stacked(system.at(middle))
-    turned += np.angle(_factors(at_first, at_last)).sum()
+    turned += (np.angle(_all_factors(at_first, at_last)) @ counts).sum()
     return float(turned)
 
 
-def _stacked(tables: Tables) -> ComplexArray:
-    """I + D G with the frequency first, as determinants and eigenvalues take it."""
-    return np.moveaxis(tables.matrices, -1, 0)
+def _stacked(tables: Tables | Along) -> list[ComplexArray]:
+    """Pieces of I + D G with the frequency first, as determinants and eigenvalues take it."""
+    return [np.moveaxis(piece, -1, 0) for _, piece in tables.pieces]
+
+
+def _determinants(tables: Tables | Along) -> ComplexArray:
+    """Determinants of I + D G, shape (frequency,)."""
+    found: ComplexArray = np.prod([determinants(piece) ** times for times, piece in tables.pieces], axis=0)
+    return found
+
+
+def _all_factors(before: list[ComplexArray], after: list[ComplexArray]) -> ComplexArray:
+    """Factors of all pieces, shape (interval, factor)."""
+    return np.hstack([_factors(one, other) for one, other in zip(before, after, strict=True)])
 
 
 def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
@@ -185,14 +202,14 @@ def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
     return np.linalg.eigvals(np.linalg.solve(before, after)).astype(complex)
 
 
-def require_stable(system: System, along_axis: Iterable[Tables]) -> None:
+def require_stable(system: System, along_axis: Iterable[Tables | Along]) -> None:
     """Refuse a system that rings itself up: it has no steady state to vibrate about.
 
     Parameters
     ----------
     system : System
         Vehicle and road.
-    along_axis : iterable of Tables
+    along_axis : iterable of Tables or Along
         Both sides at the frequencies of `along_the_axis`, stretch by stretch.
 
     Raises
@@ -213,7 +230,7 @@ def _described(system: System) -> str:
     slowest, fastest = _extent(system.vehicle.poles)
     across = np.geomspace(0.1 * slowest, 10 * fastest, 80)
     omega = (across[:, None] * (1 - 1j * np.geomspace(1e-4, 2.0, 16))).ravel()
-    size = np.abs(np.linalg.det(_stacked(system.at(omega))))
+    size = np.abs(_determinants(system.at(omega)))
     zeros = [_zero(system, start) for start in omega[np.argsort(size)[: CONTOUR.searches]]]
     growing = [zero for zero in zeros if zero is not None]
     if not growing:
@@ -226,7 +243,7 @@ def _zero(system: System, start: complex) -> complex | None:
     """Zero of the determinant near a point of the lower half-plane, by the secant method; None if it leaves."""
     before, now = start, start * 1.001
     for _ in range(60):
-        at_before, at_now = np.linalg.det(_stacked(system.at(np.array([before, now]))))
+        at_before, at_now = _determinants(system.at(np.array([before, now])))
         if abs(at_now) < 1e-10:
             return now
         if at_now == at_before:
