@@ -6,7 +6,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf.response.influence import quotient
-from movingfrf.response.line import Given
+from movingfrf.response.line import TRANSFORM, Given
 from movingfrf.response.sampling import SAMPLING, Excited
 from movingfrf.response.solve import solve
 from movingfrf.response.system import CoupledHistories, Response, System
@@ -60,12 +60,9 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
     float
         Relative to the largest value of a channel.
     """
-    line, beyond, begins = driven_by.line, driven_by.beyond, driven_by.omega.size // 2
-    force, motion = response.force.copy(), response.motion.copy()
-    for spectra in (force, motion):
-        spectra[..., :begins] = 0.0
-    of_force = beyond[: force.shape[-2]] * largest(line.records(force).values)
-    of_acceleration = beyond[-motion.shape[-2] :] * largest(line.records(motion, derivative=2).values)
+    beyond, contacts, dofs = driven_by.beyond, response.force.shape[-2], response.motion.shape[-2]
+    of_force = beyond[:contacts] * _largest_of_octave(driven_by, response.force, 0)
+    of_acceleration = beyond[-dofs:] * _largest_of_octave(driven_by, response.motion, 2)
     peaks = max(
         float(relative(part, largest(whole.values)).max(initial=0.0))
         for part, whole in ((of_force, histories.force), (of_acceleration, histories.acceleration))
@@ -74,13 +71,33 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
     return min(max(peaks, driven_by.missing), 1.0)
 
 
+def _largest_of_octave(driven_by: Excited, spectra: ComplexArray, derivative: int) -> FloatArray:
+    """Largest magnitudes, (*case, port), of what the highest octave that is solved holds of a derivative."""
+    begins, scratch = driven_by.omega.size // 2, driven_by.line.scratch()
+    found = []
+    # A few channels at a time: fresh memory for all of them costs more than their transforms.
+    for first in range(0, spectra.shape[-2], TRANSFORM.together):
+        octave = spectra[..., first : first + TRANSFORM.together, :].copy()
+        octave[..., :begins] = 0.0
+        found.append(largest(driven_by.line.records(octave, derivative=derivative, scratch=scratch).values))
+    return np.concatenate(found, axis=-1)
+
+
 def shares_beyond(response: Response, omega: ComplexArray, first: int) -> FloatArray:
     """Share of each contact force and each acceleration, relative L2, from a frequency on; shape (output,)."""
-    outputs = np.concatenate([response.force[0], omega**2 * response.motion[0]])
-    energy = np.square(outputs.real) + np.square(outputs.imag)
-    of_kind = (slice(len(response.force[0])), slice(len(response.force[0]), None))
-    shares = [_share(energy[kind, first:].sum(axis=-1), energy[kind].sum(axis=-1)) for kind in of_kind]
+    shares = []
+    for spectra, weight in ((response.force[0], np.ones(omega.size)), (response.motion[0], np.abs(omega) ** 4)):
+        # Channel by channel, as above.
+        part, whole = (
+            np.array([_energy(channel[begins:], weight[begins:]) for channel in spectra]) for begins in (first, 0)
+        )
+        shares.append(_share(part, whole))
     return np.concatenate(shares)
+
+
+def _energy(channel: ComplexArray, weight: FloatArray) -> float:
+    """Energy of a spectrum, frequency by frequency weighted."""
+    return float((np.square(channel.real) + np.square(channel.imag)) @ weight)
 
 
 def _share(part: FloatArray, whole: FloatArray) -> FloatArray:
