@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import SolveError
 from movingfrf.response.along import Along, determinants
+from movingfrf.response.batches import BATCH
 from movingfrf.response.system import System, Tables
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -29,6 +31,10 @@ class Contour:
     # many there may be at a time.
     largest_change: float = 0.9  # [0.5 to 0.95]
     halvings: int = 24  # [12 to 40]
+    # The same of a train's determinant, all contacts together: an interval times the slope of its logarithm, of which
+    # 2 is a zero half-way. The slope is taken over this share of an interval.
+    largest_turn: float = 1.0  # [0.2 to 1.5]
+    aside: float = 1e-4  # [1e-6 to 1e-2]
     most_intervals: int = 20_000  # [5000 to 200 000]
     # Natural frequencies further apart than this ratio leave no digits to the lower ones.
     widest: float = 1e-9  # [1e-10 to 1e-8]
@@ -145,43 +151,75 @@ def growing_vibrations(system: System, along_axis: Iterable[Tables | Along]) -> 
 
 def _turned(system: System, along_axis: Tables | Along) -> float:
     """Angle by which the determinant turns along a stretch of the path [rad]."""
-    path, pieces = along_axis.omega, _stacked(along_axis)
+    if isinstance(along_axis, Along):
+        return _turned_with_slopes(system, along_axis.omega)
+    path, matrices = along_axis.omega, _stacked(along_axis)
     first, middle, last = path[:-1:2], path[1::2], path[2::2]
-    at_first, at_middle, at_last = ([piece[some::2][: middle.size] for piece in pieces] for some in range(3))
-    # How often a piece, and with it each of its factors, counts.
-    counts = np.concatenate([np.full(piece.shape[1], times) for times, piece in along_axis.pieces])
+    at_first, at_middle, at_last = matrices[:-1:2], matrices[1::2], matrices[2::2]
     turned = 0.0
     for _ in range(CONTOUR.halvings):
-        factors = np.stack([_all_factors(at_first, at_middle), _all_factors(at_middle, at_last)])
-        rough = (np.abs(factors - 1) > CONTOUR.largest_change).any(axis=(0, 2))
-        turned += (np.angle(factors[:, ~rough]) @ counts).sum()
+        factors = np.hstack([_factors(at_first, at_middle), _factors(at_middle, at_last)])
+        rough = (np.abs(factors - 1) > CONTOUR.largest_change).any(axis=1)
+        turned += np.angle(factors[~rough]).sum()
         first, last = np.r_[first[rough], middle[rough]], np.r_[middle[rough], last[rough]]
-        at_first, at_last = (
-            [np.r_[one[rough], other[rough]] for one, other in zip(*ends, strict=True)]
-            for ends in ((at_first, at_middle), (at_middle, at_last))
-        )
+        at_first, at_last = np.r_[at_first[rough], at_middle[rough]], np.r_[at_middle[rough], at_last[rough]]
         if not 0 < first.size < CONTOUR.most_intervals:
             break
         middle = 0.5 * (first + last)
-        at_middle = _stacked(system.at(middle))
-    turned += (np.angle(_all_factors(at_first, at_last)) @ counts).sum()
+        at_middle = _stacked(cast("Tables", system.at(middle)))
+    turned += np.angle(_factors(at_first, at_last)).sum()
     return float(turned)
 
 
-def _stacked(tables: Tables | Along) -> list[ComplexArray]:
-    """Pieces of I + D G with the frequency first, as determinants and eigenvalues take it."""
-    return [np.moveaxis(piece, -1, 0) for _, piece in tables.pieces]
+def _turned_with_slopes(system: System, path: ComplexArray) -> float:
+    """Angle by which the determinant of a train turns along a path [rad].
+
+    The determinant is all that elimination leaves, and many zeros may turn it by full circles unseen. Its logarithm
+    has no poles of its own, and each zero adds to the slope: where an interval times the slope is little at both of
+    its ends, no zero is near.
+    """
+
+    def logarithm_and_slope(omega: ComplexArray, step: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        both = np.concatenate([omega, omega + CONTOUR.aside * step])
+        most = BATCH.frequencies(system.entries)
+        parts = [_logarithm(system.at(both[begin : begin + most])) for begin in range(0, both.size, most)]
+        here, aside = np.split(np.concatenate(parts), 2)
+        return here, _unwound(aside - here) / (CONTOUR.aside * step)
+
+    steps = np.diff(path)
+    value, slope = logarithm_and_slope(path, np.append(steps, -steps[-1]))
+    first, last = (path[:-1], value[:-1], slope[:-1]), (path[1:], value[1:], slope[1:])
+    turned = 0.0
+    for _ in range(CONTOUR.halvings):
+        steepest = np.maximum(np.abs(first[2]), np.abs(last[2]))
+        rough = np.abs(last[0] - first[0]) * steepest > CONTOUR.largest_turn
+        turned += _unwound(last[1] - first[1])[~rough].imag.sum()
+        first, last = tuple(one[rough] for one in first), tuple(one[rough] for one in last)
+        if not 0 < first[0].size < CONTOUR.most_intervals:
+            break
+        middle = 0.5 * (first[0] + last[0])
+        halves = middle, *logarithm_and_slope(middle, middle - first[0])
+        first, last = (
+            tuple(np.r_[one, half] for one, half in zip(first, halves, strict=True)),
+            tuple(np.r_[half, one] for one, half in zip(last, halves, strict=True)),
+        )
+    return float(turned + _unwound(last[1] - first[1]).imag.sum())
 
 
-def _determinants(tables: Tables | Along) -> ComplexArray:
-    """Determinants of I + D G, shape (frequency,)."""
-    found: ComplexArray = np.prod([determinants(piece) ** times for times, piece in tables.pieces], axis=0)
-    return found
+def _unwound(change: ComplexArray) -> ComplexArray:
+    """Change of a logarithm, by less than half a turn."""
+    return change - 2j * np.pi * np.round(change.imag / (2 * np.pi))
 
 
-def _all_factors(before: list[ComplexArray], after: list[ComplexArray]) -> ComplexArray:
-    """Factors of all pieces, shape (interval, factor)."""
-    return np.hstack([_factors(one, other) for one, other in zip(before, after, strict=True)])
+def _logarithm(tables: Tables | Along) -> ComplexArray:
+    """Logarithm of the determinant of I + D G, whole turns left out, shape (frequency,)."""
+    with np.errstate(divide="ignore"):
+        return np.sum([times * np.log(determinants(piece)) for times, piece in tables.pieces], axis=0)
+
+
+def _stacked(tables: Tables) -> ComplexArray:
+    """I + D G with the frequency first, as determinants and eigenvalues take it."""
+    return np.moveaxis(tables.matrix, -1, 0)
 
 
 def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
@@ -230,7 +268,7 @@ def _described(system: System) -> str:
     slowest, fastest = _extent(system.vehicle.poles)
     across = np.geomspace(0.1 * slowest, 10 * fastest, 80)
     omega = (across[:, None] * (1 - 1j * np.geomspace(1e-4, 2.0, 16))).ravel()
-    size = np.abs(_determinants(system.at(omega)))
+    size = _logarithm(system.at(omega)).real
     zeros = [_zero(system, start) for start in omega[np.argsort(size)[: CONTOUR.searches]]]
     growing = [zero for zero in zeros if zero is not None]
     if not growing:
@@ -243,7 +281,7 @@ def _zero(system: System, start: complex) -> complex | None:
     """Zero of the determinant near a point of the lower half-plane, by the secant method; None if it leaves."""
     before, now = start, start * 1.001
     for _ in range(60):
-        at_before, at_now = _determinants(system.at(np.array([before, now])))
+        at_before, at_now = np.exp(_logarithm(system.at(np.array([before, now]))))
         if abs(at_now) < 1e-10:
             return now
         if at_now == at_before:
