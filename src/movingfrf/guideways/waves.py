@@ -308,7 +308,7 @@ def residue_sum(
             frf[here] = _one_side(kappa, weight, forward == ahead_of_it, ahead[here])
             if not ahead_of_it:
                 frf[here] *= -1.0
-    _require_finite(np.isfinite(frf).all(axis=0), speed, omega)
+    _require_finite(frf, speed, omega)
     return frf
 
 
@@ -354,12 +354,13 @@ def waves(stiffness: Ratio, speed: float, omega: ComplexArray) -> Waves:
         slope: ComplexArray = evaluated(slopes(denominator), kappa)
         weight = 1j * evaluated(in_moving_frame(stiffness.below, speed, omega), kappa) / slope
         side, infinite = _sides(stiffness.above, speed, omega, kappa, slope)
-    _require_finite(~infinite & np.isfinite(weight).all(axis=0), speed, omega)
+    _require_finite(np.where(infinite, np.nan, weight), speed, omega)
     return Waves(kappa, weight, side > 0)
 
 
-def _require_finite(good: BoolArray, speed: float, omega: ComplexArray) -> None:
-    """Refuse a response that is infinite at some frequencies."""
+def _require_finite(values: ComplexArray, speed: float, omega: ComplexArray) -> None:
+    """Refuse a response, (…, frequency), that is infinite at some frequencies."""
+    good = np.isfinite(values).all(axis=0)
     if not good.all():
         frequency = omega[good.argmin()] / (2 * np.pi)
         raise SolveError(

@@ -1,14 +1,14 @@
 """A train on its guideway, solved car by car: what runs from car to car is the waves of the guideway.
 
-Cars do not know of each other but by those waves, so that (I + D G) F = D R is solved by elimination along the train,
-at a cost in proportion to the cars. A block is a car, or several that overlap. With S = (I + D G)⁻¹ D of a block alone,
-C what its contacts see of a wave that arrives and E what a wave that leaves has of each force,
+Cars know of each other only by those waves, so that (I + D G) F = D R is solved by elimination along the train, at
+a cost in proportion to the cars. A block is a car, or several that overlap. With S = (I + D G)⁻¹ D of one block,
+C what its contacts see of waves that arrive and E what leaves as waves of each force,
 
-    F = S (r − C a),   b = T a + E F = (T − E S C) a + E S r,
+    F = S (R − C a),   b = T a + E F = (T − E S C) a + E S R,
 
-a and b the amplitudes of the waves that arrive and leave, T what a wave keeps over the block's length. From the rear
-to the front, what arrives from behind is an answer to what arrives from ahead, a₊ = U a₋ + h; then back from the
-front, where nothing arrives, to the rear. Every factor is a wave that decays on its way: none exceeds one.
+a and b the amplitudes of the waves that arrive and leave, T what is left of a wave past the length of the block.
+From the rear to the front, what arrives from behind is an answer to what arrives from ahead, a₊ = U a₋ + h; then
+back from the front, where nothing arrives, to the rear. Every factor is a wave that decays: none exceeds one.
 """
 
 from __future__ import annotations
@@ -112,18 +112,17 @@ class Running(NamedTuple):
     def of(cls, waves: Waves) -> Running:
         """Sort waves; how many run ahead may change from frequency to frequency."""
         order = np.argsort(~waves.forward, axis=0, kind="stable")
-        kappa, weight, forward = (np.take_along_axis(part, order, axis=0) for part in waves)
-        ahead, behind = (int(way.sum(axis=0).max(initial=0)) for way in (forward, ~forward))
+        kappa, weight = (np.take_along_axis(part, order, axis=0) for part in (waves.kappa, waves.weight))
+        forward = np.take_along_axis(waves.forward, order, axis=0)
+        # At least one each way, be its weight zero: above the speed of all waves none runs ahead.
+        ahead, behind = (int(way.sum(axis=0).max(initial=1)) for way in (forward, ~forward))
         last = len(kappa) - behind
         belongs = np.concatenate([forward[:ahead], ~forward[last:]])
-        return cls(
-            np.where(belongs, np.concatenate([kappa[:ahead], -kappa[last:]]), 0.0),
-            np.where(belongs, np.concatenate([weight[:ahead], -weight[last:]]), 0.0),
-            ahead,
-        )
+        along_their_way = np.where(belongs, np.concatenate([kappa[:ahead], -kappa[last:]]), 0.0)
+        return cls(along_their_way, np.where(belongs, np.concatenate([weight[:ahead], -weight[last:]]), 0.0), ahead)
 
     def over(self, distances: FloatArray | float) -> ComplexArray:
-        """What waves keep over some distances [m] of at least zero, shape (*distance, wave, frequency)."""
+        """Tell what is left of waves past some distances [m] ≥ 0, shape (*distance, wave, frequency)."""
         return np.exp(1j * np.asarray(distances)[..., None, None] * self.kappa)
 
 
@@ -143,7 +142,9 @@ class Passed(NamedTuple):
         """Let waves pass a kind of block."""
         places, length, ahead = kind.places, kind.length, running.ahead
         offsets = places[:, None] - places
-        wanted = np.stack([np.broadcast_to(part, offsets.shape) for part in (np.abs(offsets), places, length - places)])
+        wanted = np.stack(
+            [np.broadcast_to(part, offsets.shape) for part in (np.abs(offsets), places, length - places)]
+        )
         distances, back = np.unique(np.round(wanted, 9), return_inverse=True)
         kept = running.over(distances)
         between, from_rear, to_front = back.reshape(wanted.shape)
@@ -191,7 +192,9 @@ class Along:
 
     def between(self, first: int, last: int) -> Along:
         """Take some of the frequencies."""
-        return Along(self.order, self.omega[first:last], Waves(*(part[:, first:last] for part in self.waves)))
+        kappa, weight, forward = self.waves
+        some = Waves(kappa[:, first:last], weight[:, first:last], forward[:, first:last])
+        return Along(self.order, self.omega[first:last], some)
 
     def admitted(self, truncation: Truncation) -> Along:
         """Let the guideway stiffen beyond a truncation."""
@@ -203,7 +206,7 @@ class Along:
         return self._swept(roughness, lambda block, under: applied(block.stiffness, under))
 
     def carried(self, loads: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """Contact forces (I + D G)⁻¹ L [N] that loads leave [N], and deflections, all (*case, contact, frequency)."""
+        """Contact forces (I + D G)⁻¹ L [N] under loads [N], and deflections, all (*case, contact, frequency)."""
         return self._swept(loads, lambda block, load: solved(block.matrix, load))
 
     @property
@@ -224,18 +227,18 @@ class Along:
         ahead, waves, frequencies = running.ahead, *running.kappa.shape
         turned: ComplexArray = np.zeros((ahead, waves - ahead, frequencies), complex)
         unit = np.broadcast_to(np.eye(ahead, dtype=complex)[:, :, None], (ahead, ahead, frequencies))
-        found: list[Met] = []
+        found, before = list[Met](), passed[self.order.kind[0]].through
         for number, gap in zip(self.order.kind, self.order.gaps, strict=True):
             through = passed[number].through
             if found:
-                kept, before = running.over(gap), passed[last].through
+                kept = running.over(gap)
                 turned = multiplied(before[:ahead, :ahead], found[-1].answer) + before[:ahead, ahead:]
                 turned *= kept[:ahead, None] * kept[ahead:]
             matrix = with_diagonal(-multiplied(turned, through[ahead:, :ahead]))
             both = solved(matrix, np.concatenate([unit, turned], axis=1).swapaxes(0, 1)).swapaxes(0, 1)
             inverse, met = both[:, :ahead], both[:, ahead:]
             found.append(Met(matrix, inverse, met, multiplied(met, through[ahead:, ahead:])))
-            last = number
+            before = through
         return found
 
     def _swept(
@@ -246,6 +249,7 @@ class Along:
         met, ahead = self._met(running, passed), running.ahead
         kept = {gap: running.over(gap) for gap in set(self.order.gaps)}
         blocks = list(zip(self.order.blocks, self.order.kind, self.order.gaps, met, strict=True))
+        before = passed[self.order.kind[0]].through
         alone, sent, arrived = list[ComplexArray](), list[ComplexArray](), list[ComplexArray]()
         # From the rear to the front: what a block does alone, and what of it arrives ahead.
         for contacts, number, gap, one in blocks:
@@ -254,11 +258,12 @@ class Along:
             sent.append(applied(block.sent, alone[-1]))
             arriving = applied(one.turned, sent[-1][..., ahead:, :])
             if arrived:
-                through = passed[last].through[:ahead, :ahead]
-                behind = (applied(through, arrived[-1]) + sent[-2][..., :ahead, :]) * kept[gap][:ahead]
+                behind = (applied(before[:ahead, :ahead], arrived[-1]) + sent[-2][..., :ahead, :]) * kept[gap][
+                    :ahead
+                ]
                 arriving += applied(one.inverse, behind)
             arrived.append(arriving)
-            last = number
+            before = block.through
         # From the front to the rear.
         force, deflection = np.empty_like(given), np.empty_like(given)
         back: ComplexArray = np.zeros((*given.shape[:-2], len(running.kappa) - ahead, given.shape[-1]), complex)
@@ -281,6 +286,6 @@ def with_diagonal(matrices: ComplexArray) -> ComplexArray:
 
 
 def determinants(matrices: ComplexArray) -> ComplexArray:
-    """Determinants of matrices of shape (n, n, frequency)."""
+    """Take the determinants of matrices of shape (n, n, frequency)."""
     found: ComplexArray = np.linalg.det(np.moveaxis(matrices, -1, 0))
     return found

@@ -31,7 +31,7 @@ class Contour:
     # many there may be at a time.
     largest_change: float = 0.9  # [0.5 to 0.95]
     halvings: int = 24  # [12 to 40]
-    # The same of a train's determinant, all contacts together: an interval times the slope of its logarithm, of which
+    # The same of a train's determinant, all contacts together: an interval times the slope of its logarithm, where
     # 2 is a zero half-way. The slope is taken over this share of an interval.
     largest_turn: float = 1.0  # [0.2 to 1.5]
     aside: float = 1e-4  # [1e-6 to 1e-2]
@@ -188,21 +188,18 @@ def _turned_with_slopes(system: System, path: ComplexArray) -> float:
 
     steps = np.diff(path)
     value, slope = logarithm_and_slope(path, np.append(steps, -steps[-1]))
-    first, last = (path[:-1], value[:-1], slope[:-1]), (path[1:], value[1:], slope[1:])
+    # Frequency, logarithm and slope at the ends of each interval.
+    first, last = np.stack([path[:-1], value[:-1], slope[:-1]]), np.stack([path[1:], value[1:], slope[1:]])
     turned = 0.0
     for _ in range(CONTOUR.halvings):
-        steepest = np.maximum(np.abs(first[2]), np.abs(last[2]))
-        rough = np.abs(last[0] - first[0]) * steepest > CONTOUR.largest_turn
+        rough = np.abs(last[0] - first[0]) * np.abs([first[2], last[2]]).max(axis=0) > CONTOUR.largest_turn
         turned += _unwound(last[1] - first[1])[~rough].imag.sum()
-        first, last = tuple(one[rough] for one in first), tuple(one[rough] for one in last)
-        if not 0 < first[0].size < CONTOUR.most_intervals:
+        first, last = first[:, rough], last[:, rough]
+        if not 0 < first.shape[1] < CONTOUR.most_intervals:
             break
         middle = 0.5 * (first[0] + last[0])
-        halves = middle, *logarithm_and_slope(middle, middle - first[0])
-        first, last = (
-            tuple(np.r_[one, half] for one, half in zip(first, halves, strict=True)),
-            tuple(np.r_[half, one] for one, half in zip(last, halves, strict=True)),
-        )
+        halves = np.stack([middle, *logarithm_and_slope(middle, middle - first[0])])
+        first, last = np.hstack([first, halves]), np.hstack([halves, last])
     return float(turned + _unwound(last[1] - first[1]).imag.sum())
 
 
