@@ -141,6 +141,12 @@ FAULTS = [
         "largest_turn: float = 1.0",
         "largest_turn: float = 50.0",
     ),
+    Fault(
+        "looked at again",
+        "response/sampling.py",
+        "if after is None else after.points",
+        "if after is after else 0.0",
+    ),
     Fault("one car counts", "response/along.py", "self.order.kind.count(number)", "1"),
     Fault("Cramer's rule turned", "response/batches.py", "a * second - c * first", "a * second + c * first"),
     Fault(

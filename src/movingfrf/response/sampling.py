@@ -86,27 +86,6 @@ class Sampling:
 SAMPLING = Sampling()
 
 
-class Look(NamedTuple):
-    """What drives a system, sampled along a line, and what the system makes of it."""
-
-    line: Line
-    driving: Given
-    magnitudes: FloatArray  # of its spectra
-    found: Influence
-    energies: tuple[float, ...]  # in the highest quarter, of this and of coarser steps; relative
-
-    @classmethod
-    def at(
-        cls, system: Sized, given: Callable[[Line], Given], line: Line, truncation: float | None, alike: float
-    ) -> Look:
-        """Look along a line."""
-        driving = given(line)
-        magnitudes = line.magnitudes(driving)
-        found = influence(system, line, magnitudes, truncation, alike)
-        highest = found.content(int(SAMPLING.quarter * line.size))
-        return cls(line, driving, magnitudes, found, (highest**2,))
-
-
 class Excited(NamedTuple):
     """What drives a system, in steps that are fine enough, and up to where it is solved."""
 
@@ -119,8 +98,9 @@ class Excited(NamedTuple):
     left_out: float  # of any output, relative L2, where no step that is allowed is fine enough
     beyond: FloatArray  # (output,) what lies beyond over what lies in the highest octave that is solved
     missing: float  # what of any output is known to be left out, relative L2, where the step is stated
-    look: Look  # at steps that are fine enough
-    points: float  # so many per period, before their number was made to factorise
+    points: float  # of the line per period, before their number was made to factorise
+    found: Influence  # along the line
+    energies: tuple[float, ...]  # in the highest quarter, of ever finer steps
 
     @property
     def step(self) -> float:
@@ -190,15 +170,14 @@ def excited(
         TRANSFORM.bytes_per_sample * system.ports * points,
         f"a period of {line.period:.4g} s solved in steps of {line.period / points:.3g} s",
     )
-    look = None if after is None else after.look
-    energies: tuple[float, ...] = (np.inf, np.inf, np.inf) if look is None else look.energies[:-1]
+    energies = (np.inf, np.inf, np.inf) if after is None else after.energies[:-1]
     while True:
-        if look is None:
-            line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
-            look = Look.at(system, given, line, truncation, wanted.alike)
-            look = look._replace(energies=energies + look.energies)
-        line, driving, magnitudes, found, energies = look
-        highest = np.sqrt(energies[-1])
+        line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
+        driving = given(line)
+        magnitudes = line.magnitudes(driving)
+        found = influence(system, line, magnitudes, truncation, wanted.alike) if after is None else after.found
+        highest = found.content(int(SAMPLING.quarter * line.size))
+        energies = (*energies, highest**2)
         # Beyond this frequency what an abrupt change adds has passed when the next sample is taken.
         passed = int(SAMPLING.passed * line.period / (2 * np.pi * line.clear(driving)))
         at_once = SAMPLING.at_once / np.sqrt(line.size)
@@ -213,7 +192,7 @@ def excited(
         falls = not apart or energies[-1] <= SAMPLING.falling * energies[-4]
         if not falls and not (wanted.told and _stiffens(system, line, found)):
             break
-        points, look = 2 * points, None
+        points, after = 2 * points, None
     fades = SAMPLING.fades_abrupt if driving.abrupt else SAMPLING.fades
     if stated is None:
         limit = negligible if driving.abrupt else relaxed * wanted.smooth
@@ -241,8 +220,9 @@ def excited(
         left_out=0.0 if enough else highest,
         beyond=_beyond(found, ends, count),
         missing=0.0 if stated is None else found.content(ends),
-        look=look,
         points=points,
+        found=found,
+        energies=energies,
     )
 
 

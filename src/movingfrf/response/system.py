@@ -137,7 +137,7 @@ class System(Remembering):
     @property
     def entries(self) -> int:
         """Entries of matrices at one frequency."""
-        return self.ports * (4 * self.train.widest if self.train else self.ports)
+        return self.ports * (2 * self.train.widest if self.train else self.ports)
 
     @property
     def ports(self) -> int:
