@@ -192,6 +192,11 @@ def test_a_drive_is_the_same_either_way(contact_stiffness):
         mine, others = (result[name].values for result in results)
         assert np.abs(mine - others).max() < 1e-9 * np.abs(others).max(), name
     assert results[0].attrs["solved_step"] == results[1].attrs["solved_step"]
+    # The sag shares the weight anew among the axles of a coach.
+    matrix = dense(road, train, 60.0, np.zeros(1, complex)).matrix[..., 0].real
+    load = np.linalg.solve(matrix, train.static_loads)
+    np.testing.assert_allclose(results[0].static_load, load, rtol=1e-9)
+    assert np.abs(load / train.static_loads - 1).max() > 1e-6
 
 
 SOFT = mf.quarter_car(**SLACK)
