@@ -1,12 +1,15 @@
 """In what steps a record is solved: against steady waves, finer steps, longer records, and other steps."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.response.line import Line, folded
+from movingfrf.response.line import Given, Line, folded
+from movingfrf.response.sampling import SAMPLING, excited
+from movingfrf.response.system import System
 from tests.helpers import DAMPED, HALF_TRUCK, QUARTER_TRUCK
 
 PAVEMENT = DAMPED["euler_bernoulli_winkler"]
@@ -338,3 +341,28 @@ def test_lost_contact_is_seen_between_the_samples_of_the_output():
         assert f"{share:.2%}" in lifted[0]["message"]
         found[step] = share
     assert found[2e-2] == pytest.approx(found[1e-3], rel=0.2)
+
+
+@pytest.mark.parametrize("less", [0.5, 0.01])
+def test_a_second_look_is_like_a_first_one(less):
+    """Where less turns out to be negligible, coarser steps are not looked at again: with the same outcome."""
+    system, line = (
+        System(guideway=TRACK, vehicle=HERTZ, speed=20.0),
+        Line(samples=500, time_step=2e-3, settling=0.5),
+    )
+    corners, looks = np.random.default_rng(0).normal(size=26), [0]
+
+    def given(line):
+        looks[0] += 1
+        return Given(1e-4 * np.interp(line.instants, np.linspace(0.0, 2.0, 26), np.r_[0, corners[1:]])[None])
+
+    stricter = replace(SAMPLING.road, negligible=less * SAMPLING.road.negligible)
+    first = excited(system, given, line, 0.08, truncation=None)
+    few, looks[0] = looks[0], 0
+    afresh = excited(system, given, line, 0.08, truncation=None, wanted=stricter)
+    several, looks[0] = looks[0], 0
+    after = excited(system, given, line, 0.08, truncation=None, wanted=stricter, after=first)
+    assert looks[0] == several - (few - 1)
+    assert (after.line, after.truncation, after.left_out) == (afresh.line, afresh.truncation, afresh.left_out)
+    for mine, others in ((after.spectra, afresh.spectra), (after.fade, afresh.fade), (after.beyond, afresh.beyond)):
+        np.testing.assert_array_equal(mine, others)

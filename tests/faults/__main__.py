@@ -31,6 +31,7 @@ SELECTION = [
     "tests/laws/test_truncation.py",
     "tests/laws/test_switched_loads.py",
     "tests/laws/test_cases.py",
+    "tests/laws/test_trains.py",
     "tests/laws/test_random.py",
     "tests/laws/test_random_statistics.py",
     "tests/test_roads.py",

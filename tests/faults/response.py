@@ -37,8 +37,8 @@ FAULTS = [
     Fault(
         "road that does not stiffen",
         "response/system.py",
-        "truncation.admitted(tables.frf, tables.omega)",
-        "tables.frf",
+        "frf=truncation.admitted(self.frf, self.omega)",
+        "frf=self.frf",
     ),
     Fault(
         "load's road that does not fade",
@@ -101,10 +101,15 @@ FAULTS = [
     Fault(
         "sag leaves the loads alone",
         "response/survey.py",
-        "at_rest.shared(system.vehicle.static_loads[:, None] + 0j)[:, 0].real",
-        "system.vehicle.static_loads",
+        "load=load[:, 0].real",
+        "load=system.vehicle.static_loads",
     ),
-    Fault("steady basin reversed", "response/survey.py", ".real @ load", ".real.T @ load"),
+    Fault(
+        "steady basin reversed",
+        "response/system.py",
+        "return force, applied(self.frf, force)",
+        "return force, applied(self.frf.swapaxes(0, 1), force)",
+    ),
     Fault("static sag missing", "response/simulation.py", "+ steady.deflection[:, None]", "+ 0.0"),
     Fault(
         "truncation of the first case only",
@@ -112,7 +117,37 @@ FAULTS = [
         "cases = magnitudes.reshape(-1, *",
         "cases = magnitudes[:1].reshape(-1, *",
     ),
-    Fault("ports without a diagonal", "response/system.py", "matrices[port, port] += 1.0", "pass"),
+    Fault("ports without a diagonal", "response/along.py", "matrices[number, number] += 1.0", "pass"),
+    # Trains, car by car.
+    Fault(
+        "waves that do not turn back",
+        "response/along.py",
+        "-multiplied(turned, through",
+        "-0.0 * multiplied(turned, through",
+    ),
+    Fault("gaps without length", "response/along.py", "gap: running.over(gap)", "gap: running.over(0.0)"),
+    Fault("a train on rails that do not stiffen", "response/along.py", "_replace(weight=weight)", "_replace()"),
+    Fault(
+        "waves of the first frequency's side",
+        "response/along.py",
+        "np.where(belongs, np.concatenate([weight",
+        "np.where(belongs[:, :1], np.concatenate([weight",
+    ),
+    Fault("cars that overlap apart", "response/along.py", "min() <= front", "min() <= -np.inf"),
+    Fault("a gap behind the wrong car", "response/along.py", "float(rear - front)", "float(rear - places.min())"),
+    Fault(
+        "zeros next to each other unseen",
+        "response/stability.py",
+        "largest_turn: float = 1.0",
+        "largest_turn: float = 50.0",
+    ),
+    Fault(
+        "looked at again",
+        "response/sampling.py",
+        "if after is None else after.points",
+        "if after is after else 0.0",
+    ),
+    Fault("one car counts", "response/along.py", "self.order.kind.count(number)", "1"),
     Fault("Cramer's rule turned", "response/batches.py", "a * second - c * first", "a * second + c * first"),
     Fault(
         "truncation at zero that is none",

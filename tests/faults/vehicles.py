@@ -5,6 +5,9 @@ from __future__ import annotations
 from tests.faults.fault import Fault
 
 FAULTS = [
+    Fault(
+        "all cars alike", "vehicles/dynamics.py", "if same in found:", "if found and (same := next(iter(found))):"
+    ),
     # Coupling.
     Fault("footprint twice as long", "_basics/enveloping.py", "half = 0.5 *", "half = 1.0 *"),
     Fault("cams twice as far apart", "_basics/enveloping.py", "0.5 * cams", "1.0 * cams"),

@@ -22,7 +22,7 @@ from movingfrf.guideways.critical import (
 )
 from movingfrf.guideways.foundations import Foundation
 from movingfrf.guideways.guideway import Asked, at_offsets
-from movingfrf.guideways.waves import Ratio, residue_sum
+from movingfrf.guideways.waves import Ratio, Waves, residue_sum, waves
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +124,28 @@ class Track(Remembering, Value):
             derivative=derivative,
             known_derivatives=None,
         )
+
+    def waves(self, speed: float, omega: ComplexArray) -> Waves:
+        """Free waves of the track, as an observer who travels along sees them.
+
+        Parameters
+        ----------
+        speed : float
+            Speed of the observer [m/s].
+        omega : ndarray, shape (frequency,)
+            Angular frequency in the moving frame [rad/s]; may be complex with Im ω ≤ 0.
+
+        Returns
+        -------
+        Waves
+            Wavenumbers [rad/m], weights [m/N], and which of them run ahead of a source.
+
+        Raises
+        ------
+        SolveError
+            If the response is infinite.
+        """
+        return waves(self.stiffness(), speed, omega)
 
     def _frf(self, asked: Asked) -> ComplexArray:
         return residue_sum(self.stiffness(), asked.ahead[:, 0], asked.speed, asked.omega, asked.derivative)

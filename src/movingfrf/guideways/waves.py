@@ -132,7 +132,10 @@ def slopes(coefficients: ComplexArray) -> ComplexArray:
 
 
 class Waves(NamedTuple):
-    """Free waves of a guideway, as a moving FRF consists of them."""
+    """Free waves of a guideway, as a moving FRF consists of them.
+
+    G(ξ ≥ 0) = Σ weight e^{iκξ} over those that are forward, G(ξ < 0) = −Σ weight e^{iκξ} over the others.
+    """
 
     kappa: ComplexArray  # (wave, frequency) wavenumber κ [rad/m]
     weight: ComplexArray  # (wave, frequency) i N(κ)/D′(κ) [m/N]
@@ -199,6 +202,9 @@ def waves(stiffness: Ratio, speed: float, omega: ComplexArray) -> Waves:
     SolveError
         If the response is infinite: an undamped guideway at a cut-off frequency or a critical speed.
     """
+    if not omega.size:
+        nothing = np.zeros((0, 0), complex)
+        return Waves(nothing, nothing, nothing.real > 0)
     above, below = (in_moving_frame(table, speed) for table in (stiffness.above, stiffness.below))
     # What rounding may make of D, and what a change of ω does.
     size = _expanded(np.abs(stiffness.above), abs(speed)).real
@@ -294,8 +300,6 @@ def residue_sum(
     SolveError
         If the response is infinite: an undamped guideway at a cut-off frequency or a critical speed.
     """
-    if not omega.size:
-        return np.zeros((ahead.size, 0), complex)
     return waves(stiffness, speed, omega).summed(ahead, derivative)
 
 

@@ -21,11 +21,6 @@ class Sized(Protocol):
     """What tells how large its outputs are: `System` and `Prescribed`."""
 
     @property
-    def entries(self) -> int:
-        """Entries of a matrix at one frequency."""
-        ...
-
-    @property
     def ports(self) -> int:
         """Contacts, or loads and points."""
         ...
@@ -165,7 +160,7 @@ def influence(
     """
     starts = _bands(line, truncation)
     omega = line.omega((starts + np.r_[starts[1:], line.size] - 1) // 2)
-    batch = BATCH.frequencies(system.entries)
+    batch = BATCH.frequencies(system.ports**2)
     cases = magnitudes.reshape(-1, *magnitudes.shape[-2:])
     power = np.add.reduceat(cases**2, starts, axis=2)
     shares: list[Share] = []

@@ -99,6 +99,9 @@ class Excited(NamedTuple):
     left_out: float  # of any output, relative L2, where no step that is allowed is fine enough
     beyond: FloatArray  # (output,) what lies beyond over what lies in the highest octave that is solved
     missing: float  # what of any output is known to be left out, relative L2, where the step is stated
+    points: float  # of the line per period, before their number was made to factorise
+    found: Influence  # along the line
+    energies: tuple[float, ...]  # in the highest quarter, of ever finer steps
 
     @property
     def step(self) -> float:
@@ -125,6 +128,7 @@ def excited(
     truncation: float | None,
     solved_step: float | None = None,
     wanted: Wanted = SAMPLING.road,
+    after: Excited | None = None,
 ) -> Excited:
     """Find the steps in which a record is solved.
 
@@ -146,6 +150,8 @@ def excited(
         Step that is stated [s].
     wanted : Wanted
         How much is solved.
+    after : Excited, optional
+        The same with less wanted: its steps were not too fine, and need not be looked at again.
 
     Returns
     -------
@@ -157,7 +163,7 @@ def excited(
     ValueError
         If memory would not hold it.
     """
-    points = max(wanted.per_station * line.period / step, SAMPLING.least)
+    points = max(wanted.per_station * line.period / step, SAMPLING.least) if after is None else after.points
     stated = None if solved_step is None else int(np.ceil(0.5 * line.period / solved_step)) + 1
     if stated is not None:
         points = max(points, 2.0 * stated)
@@ -165,13 +171,14 @@ def excited(
         TRANSFORM.bytes_per_sample * system.ports * points,
         f"a period of {line.period:.4g} s solved in steps of {line.period / points:.3g} s",
     )
-    energies = [np.inf, np.inf, np.inf]
+    energies = (np.inf, np.inf, np.inf) if after is None else after.energies[:-1]
     while True:
         line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
         driving = given(line)
         magnitudes = line.magnitudes(driving)
-        found = influence(system, line, magnitudes, truncation, wanted.alike)
+        found = influence(system, line, magnitudes, truncation, wanted.alike) if after is None else after.found
         highest = found.content(int(SAMPLING.quarter * line.size))
+        energies = (*energies, highest**2)
         # Beyond this frequency what an abrupt change adds has passed when the next sample is taken.
         passed = int(SAMPLING.passed * line.period / (2 * np.pi * line.clear(driving)))
         at_once = SAMPLING.at_once / np.sqrt(line.size)
@@ -183,10 +190,10 @@ def excited(
             break
         # Before the closest stations are told apart what they hold does not fall.
         apart = points > 8 * wanted.per_station * line.period / (step if finest is None else finest)
-        falls = not apart or highest**2 <= SAMPLING.falling * energies[-3]
+        falls = not apart or energies[-1] <= SAMPLING.falling * energies[-4]
         if not falls and not (wanted.told and _stiffens(system, line, found)):
             break
-        points, energies = 2 * points, [*energies, highest**2]
+        points, after = 2 * points, None
     fades = SAMPLING.fades_abrupt if driving.abrupt else SAMPLING.fades
     if stated is None:
         limit = negligible if driving.abrupt else relaxed * wanted.smooth
@@ -215,6 +222,9 @@ def excited(
         left_out=0.0 if enough else highest,
         beyond=_beyond(found, ends, count),
         missing=0.0 if stated is None else found.content(ends),
+        points=points,
+        found=found,
+        energies=energies,
     )
 
 

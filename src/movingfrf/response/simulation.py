@@ -261,6 +261,7 @@ def _solved(
 ) -> tuple[Excited, Response, CoupledHistories, float]:
     """Solve, for more where what is left out matters to a channel's largest value; and say how much it does."""
     line, wanted = line_of(journey, system.vehicle, fading=_fading(excitation, journey)), SAMPLING.road
+    before: Excited | None = None
     for _ in range(SAMPLING.rounds):
         progress("sampling", 0.0)
         # One part, one case.
@@ -273,6 +274,7 @@ def _solved(
             truncation=journey.truncation,
             solved_step=journey.solved_step,
             wanted=wanted,
+            after=before,
         )
         response = solve(
             system, driven_by.omega, driven_by.spectra, truncation=driven_by.truncation, progress=progress
@@ -285,7 +287,7 @@ def _solved(
         if driven_by.finest or left_out <= tolerated:
             break
         less = wanted.negligible * max(0.5 * tolerated / left_out, 0.01)
-        wanted = replace(wanted, negligible=less, smooth=less)
+        wanted, before = replace(wanted, negligible=less, smooth=less), driven_by
     return driven_by, response, histories, left_out
 
 

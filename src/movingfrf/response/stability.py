@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import SolveError
+from movingfrf.response.along import Along, determinants
+from movingfrf.response.batches import BATCH
 from movingfrf.response.system import System, Tables
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -28,6 +31,10 @@ class Contour:
     # many there may be at a time.
     largest_change: float = 0.9  # [0.5 to 0.95]
     halvings: int = 24  # [12 to 40]
+    # The same of a train's determinant, all contacts together: an interval times the slope of its logarithm, where
+    # 2 is a zero half-way. The slope is taken over this share of an interval.
+    largest_turn: float = 1.0  # [0.2 to 1.5]
+    aside: float = 1e-4  # [1e-6 to 1e-2]
     most_intervals: int = 20_000  # [5000 to 200 000]
     # Natural frequencies further apart than this ratio leave no digits to the lower ones.
     widest: float = 1e-9  # [1e-10 to 1e-8]
@@ -120,7 +127,7 @@ def stretches(path: ComplexArray, most: int) -> list[ComplexArray]:
     return [path[first : first + steps + 1] for first in range(0, path.size - 1, steps)]
 
 
-def growing_vibrations(system: System, along_axis: Iterable[Tables]) -> int:
+def growing_vibrations(system: System, along_axis: Iterable[Tables | Along]) -> int:
     """Count the vibrations of the coupled system that grow in time, conjugate pairs counted twice.
 
     Every zero of det(I + D G) with Im ω < 0 turns the phase of the determinant by one full circle along the
@@ -130,7 +137,7 @@ def growing_vibrations(system: System, along_axis: Iterable[Tables]) -> int:
     ----------
     system : System
         Vehicle and road.
-    along_axis : iterable of Tables
+    along_axis : iterable of Tables or Along
         Both sides at the frequencies of `along_the_axis`, stretch by stretch.
 
     Returns
@@ -142,8 +149,10 @@ def growing_vibrations(system: System, along_axis: Iterable[Tables]) -> int:
     return max(round(-turned / np.pi), 0)
 
 
-def _turned(system: System, along_axis: Tables) -> float:
+def _turned(system: System, along_axis: Tables | Along) -> float:
     """Angle by which the determinant turns along a stretch of the path [rad]."""
+    if isinstance(along_axis, Along):
+        return _turned_with_slopes(system, along_axis.omega)
     path, matrices = along_axis.omega, _stacked(along_axis)
     first, middle, last = path[:-1:2], path[1::2], path[2::2]
     at_first, at_middle, at_last = matrices[:-1:2], matrices[1::2], matrices[2::2]
@@ -157,14 +166,57 @@ def _turned(system: System, along_axis: Tables) -> float:
         if not 0 < first.size < CONTOUR.most_intervals:
             break
         middle = 0.5 * (first + last)
-        at_middle = _stacked(system.at(middle))
+        at_middle = _stacked(cast("Tables", system.at(middle)))
     turned += np.angle(_factors(at_first, at_last)).sum()
     return float(turned)
 
 
+def _turned_with_slopes(system: System, path: ComplexArray) -> float:
+    """Angle by which the determinant of a train turns along a path [rad].
+
+    The determinant is all that elimination leaves, and many zeros may turn it by full circles unseen. Its logarithm
+    has no poles of its own, and each zero adds to the slope: where an interval times the slope is little at both of
+    its ends, no zero is near.
+    """
+
+    def logarithm_and_slope(omega: ComplexArray, step: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        both = np.concatenate([omega, omega + CONTOUR.aside * step])
+        most = BATCH.frequencies(system.entries)
+        parts = [_logarithm(system.at(both[begin : begin + most])) for begin in range(0, both.size, most)]
+        here, aside = np.split(np.concatenate(parts), 2)
+        return here, _unwound(aside - here) / (CONTOUR.aside * step)
+
+    steps = np.diff(path)
+    value, slope = logarithm_and_slope(path, np.append(steps, -steps[-1]))
+    # Frequency, logarithm and slope at the ends of each interval.
+    first, last = np.stack([path[:-1], value[:-1], slope[:-1]]), np.stack([path[1:], value[1:], slope[1:]])
+    turned = 0.0
+    for _ in range(CONTOUR.halvings):
+        rough = np.abs(last[0] - first[0]) * np.abs([first[2], last[2]]).max(axis=0) > CONTOUR.largest_turn
+        turned += _unwound(last[1] - first[1])[~rough].imag.sum()
+        first, last = first[:, rough], last[:, rough]
+        if not 0 < first.shape[1] < CONTOUR.most_intervals:
+            break
+        middle = 0.5 * (first[0] + last[0])
+        halves = np.stack([middle, *logarithm_and_slope(middle, middle - first[0])])
+        first, last = np.hstack([first, halves]), np.hstack([halves, last])
+    return float(turned + _unwound(last[1] - first[1]).imag.sum())
+
+
+def _unwound(change: ComplexArray) -> ComplexArray:
+    """Change of a logarithm, by less than half a turn."""
+    return change - 2j * np.pi * np.round(change.imag / (2 * np.pi))
+
+
+def _logarithm(tables: Tables | Along) -> ComplexArray:
+    """Logarithm of the determinant of I + D G, whole turns left out, shape (frequency,)."""
+    with np.errstate(divide="ignore"):
+        return np.sum([times * np.log(determinants(piece)) for times, piece in tables.pieces], axis=0)
+
+
 def _stacked(tables: Tables) -> ComplexArray:
     """I + D G with the frequency first, as determinants and eigenvalues take it."""
-    return np.moveaxis(tables.matrices, -1, 0)
+    return np.moveaxis(tables.matrix, -1, 0)
 
 
 def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
@@ -185,14 +237,14 @@ def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
     return np.linalg.eigvals(np.linalg.solve(before, after)).astype(complex)
 
 
-def require_stable(system: System, along_axis: Iterable[Tables]) -> None:
+def require_stable(system: System, along_axis: Iterable[Tables | Along]) -> None:
     """Refuse a system that rings itself up: it has no steady state to vibrate about.
 
     Parameters
     ----------
     system : System
         Vehicle and road.
-    along_axis : iterable of Tables
+    along_axis : iterable of Tables or Along
         Both sides at the frequencies of `along_the_axis`, stretch by stretch.
 
     Raises
@@ -213,7 +265,7 @@ def _described(system: System) -> str:
     slowest, fastest = _extent(system.vehicle.poles)
     across = np.geomspace(0.1 * slowest, 10 * fastest, 80)
     omega = (across[:, None] * (1 - 1j * np.geomspace(1e-4, 2.0, 16))).ravel()
-    size = np.abs(np.linalg.det(_stacked(system.at(omega))))
+    size = _logarithm(system.at(omega)).real
     zeros = [_zero(system, start) for start in omega[np.argsort(size)[: CONTOUR.searches]]]
     growing = [zero for zero in zeros if zero is not None]
     if not growing:
@@ -226,7 +278,7 @@ def _zero(system: System, start: complex) -> complex | None:
     """Zero of the determinant near a point of the lower half-plane, by the secant method; None if it leaves."""
     before, now = start, start * 1.001
     for _ in range(60):
-        at_before, at_now = np.linalg.det(_stacked(system.at(np.array([before, now]))))
+        at_before, at_now = np.exp(_logarithm(system.at(np.array([before, now]))))
         if abs(at_now) < 1e-10:
             return now
         if at_now == at_before:

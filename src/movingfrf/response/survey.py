@@ -9,6 +9,7 @@ import numpy as np
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray
 from movingfrf.guideways.guideway import findings_of
+from movingfrf.response.along import Along
 from movingfrf.response.batches import BATCH, unthreaded
 from movingfrf.response.stability import along_the_axis, require_stable, stretches
 from movingfrf.response.system import System, Tables
@@ -78,14 +79,14 @@ def survey(system: System) -> Survey:
     return Survey(steady=steady, critical_speed=critical_speed, findings=tuple(findings))
 
 
-def steady_state(system: System, at_rest: Tables) -> SteadyState:
+def steady_state(system: System, at_rest: Tables | Along) -> SteadyState:
     """Steady travel on a smooth road.
 
     Parameters
     ----------
     system : System
         Vehicle and road.
-    at_rest : Tables
+    at_rest : Tables or Along
         Both sides at ω = 0.
 
     Returns
@@ -94,5 +95,5 @@ def steady_state(system: System, at_rest: Tables) -> SteadyState:
         Loads and deflections. With more contacts than rigid motions the sag of the road redistributes the
         weight: (I + D G) F₀ = F_s at ω = 0.
     """
-    load = at_rest.shared(system.vehicle.static_loads[:, None] + 0j)[:, 0].real
-    return SteadyState(load=load, deflection=at_rest.frf[..., 0].real @ load)
+    load, deflection = at_rest.carried(system.vehicle.static_loads[:, None] + 0j)
+    return SteadyState(load=load[:, 0].real, deflection=deflection[:, 0].real)

@@ -15,7 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf.guideways.guideway import Guideway
+from movingfrf.response.along import Along, Order, in_order, with_diagonal
 from movingfrf.response.batches import BATCH, applied, multiplied, solved
 from movingfrf.response.line import Histories, Line
 from movingfrf.response.truncation import Truncation
@@ -41,27 +43,32 @@ class Tables:
     frf: ComplexArray
     stiffness: ComplexArray
 
+    def between(self, first: int, last: int) -> Tables:
+        """Take some of the frequencies."""
+        return Tables(*(part[..., first:last] for part in (self.omega, self.frf, self.stiffness)))
+
+    def admitted(self, truncation: Truncation) -> Tables:
+        """Let the guideway stiffen beyond a truncation."""
+        return replace(self, frf=truncation.admitted(self.frf, self.omega))
+
     @property
-    def matrices(self) -> ComplexArray:
+    def matrix(self) -> ComplexArray:
         """I + D G, shape (port, port, frequency): singular at the poles of the coupled system."""
-        matrices = multiplied(self.stiffness, self.frf)
-        for port in range(len(matrices)):
-            matrices[port, port] += 1.0
-        return matrices
-
-    def shared(self, loads: ComplexArray) -> ComplexArray:
-        """Apply (I + D G)⁻¹ to loads [N], (*case, port, frequency): what the sag of the guideway leaves of them."""
-        return solved(self.matrices, loads)
-
-    def forces(self, roughness: ComplexArray) -> ComplexArray:
-        """Contact forces F = (I + D G)⁻¹ D R [N], both (*case, port, frequency)."""
-        return self.shared(applied(self.stiffness, roughness))
+        return with_diagonal(multiplied(self.stiffness, self.frf))
 
     @property
-    def unit(self) -> ComplexArray:
-        """One case per port: a roughness of 1 m under that port alone, shape (port, port, frequency)."""
-        ports = len(self.stiffness)
-        return np.broadcast_to(np.eye(ports, dtype=complex)[:, :, None], (ports, ports, self.omega.size))
+    def pieces(self) -> list[tuple[int, ComplexArray]]:
+        """Matrices (n, n, frequency) whose determinants, each to a power, multiply to that of I + D G: itself."""
+        return [(1, self.matrix)]
+
+    def carried(self, loads: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Contact forces (I + D G)⁻¹ L [N] that loads leave [N], and deflections, all (*case, port, frequency)."""
+        force = solved(self.matrix, loads)
+        return force, applied(self.frf, force)
+
+    def coupled(self, roughness: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Contact forces F = (I + D G)⁻¹ D R [N] and deflections G F [m], all (*case, port, frequency)."""
+        return self.carried(applied(self.stiffness, roughness))
 
 
 class Response(NamedTuple):
@@ -92,7 +99,7 @@ class CoupledHistories(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class System:
+class System(Remembering):
     """A guideway and a vehicle that travels on it.
 
     Parameters
@@ -120,9 +127,17 @@ class System:
         return "vehicle and guideway have"
 
     @property
+    @remembered
+    def train(self) -> Order | None:
+        """The vehicle from car to car, where it is solved so; None where all contacts are solved at once."""
+        order = in_order(self.vehicle)
+        long = len(order.blocks) > 1 and self.ports > BATCH.at_once
+        return order if long and hasattr(self.guideway, "waves") else None
+
+    @property
     def entries(self) -> int:
-        """Entries of a matrix at one frequency."""
-        return self.dynamics.contacts**2
+        """Entries of matrices at one frequency."""
+        return self.ports * (2 * self.train.widest if self.train else self.ports)
 
     @property
     def ports(self) -> int:
@@ -135,12 +150,14 @@ class System:
         contacts, dofs = self.dynamics.contacts, self.dynamics.dofs
         return contacts, contacts, dofs, dofs
 
-    def at(self, omega: ComplexArray) -> Tables:
+    def at(self, omega: ComplexArray) -> Tables | Along:
         """Evaluate both sides at some frequencies [rad/s]."""
+        if self.train:
+            return Along(self.train, omega, self.guideway.waves(self.speed, omega))  # type: ignore[attr-defined]
         frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
         return Tables(omega, np.moveaxis(frf, 0, -1), self.dynamics.stiffness(omega))
 
-    def at_each(self, omegas: Sequence[ComplexArray]) -> Iterator[Tables]:
+    def at_each(self, omegas: Sequence[ComplexArray]) -> Iterator[Tables | Along]:
         """Evaluate both sides at sets of frequencies [rad/s], as many sets in one go as a batch holds."""
         most, waiting = BATCH.frequencies(self.entries), list(omegas)
         while waiting:
@@ -151,7 +168,7 @@ class System:
             whole = self.at(np.concatenate(together))
             ends = np.cumsum([0, *(omega.size for omega in together)]).tolist()
             for first, last in pairwise(ends):
-                yield Tables(*(part[..., first:last] for part in (whole.omega, whole.frf, whole.stiffness)))
+                yield whole.between(first, last)
 
     def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
         """Magnitudes of what the guideway adds to each output, and of all of it, per roughness under each contact.
@@ -160,10 +177,9 @@ class System:
         (contact, output, frequency). A rigid road changes the displacement under the contacts by −W, hence the
         force by D W and the motion by −H W.
         """
-        tables = self.at(omega)
         # One case per contact under which the road is rough.
-        unit, force = tables.unit, tables.forces(tables.unit)
-        deflection = applied(tables.frf, force)
+        unit = np.broadcast_to(np.eye(self.ports, dtype=complex)[:, :, None], (self.ports, self.ports, omega.size))
+        force, deflection = self.at(omega).coupled(unit)
         moved, pushed = self.dynamics.response(omega, deflection)
         motion = moved - self.dynamics.response(omega, unit)[0]
         squared = np.abs(omega) ** 2
@@ -182,10 +198,8 @@ class System:
         if not reach:
             motion, force = self.dynamics.response(omega, displacement)
             return Response(force, roughness[..., :0], motion)
-        tables = self.at(omega[:reach])
-        tables = replace(tables, frf=truncation.admitted(tables.frf, tables.omega))
-        solved_force = tables.forces(roughness[..., :reach])
-        deflection = applied(tables.frf, solved_force)
+        tables = self.at(omega[:reach]).admitted(truncation)
+        solved_force, deflection = tables.coupled(roughness[..., :reach])
         displacement[..., :reach] += deflection
         motion, force = self.dynamics.response(omega, displacement)
         # Near a resonance of the vehicle between held contacts D d would lose digits that (I + D G)⁻¹ D R has.

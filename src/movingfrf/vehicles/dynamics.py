@@ -16,13 +16,14 @@ rigid. No large number stands for rigidity.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg
 
 from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from movingfrf._basics.remembered import Remembering, remembered
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -216,8 +217,16 @@ class Part:
         return direct
 
 
+class Alike(NamedTuple):
+    """Parts that are the same but for where they stand, as the cars of a train: computed together."""
+
+    part: Part  # the first of them
+    dofs: IntArray  # (part, dof)
+    contacts: IntArray  # (part, contact)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class Dynamics:
+class Dynamics(Remembering):
     """A vehicle at its contacts, ready to be asked at any frequency; `Vehicle.dynamics()` makes it.
 
     Parameters
@@ -233,9 +242,22 @@ class Dynamics:
     contacts: int
 
     @property
+    @remembered
+    def alike(self) -> tuple[Alike, ...]:
+        """The parts, those together that are the same but for where they stand."""
+        groups: dict[int, list[Part]] = {}
+        for part in self.parts:
+            groups.setdefault(id(part.own), []).append(part)
+        return tuple(
+            Alike(group[0], np.stack([part.dofs for part in group]), np.stack([part.contacts for part in group]))
+            for group in groups.values()
+        )
+
+    @property
     def poles(self) -> ComplexArray:
         """Poles on a rigid road [rad/s], one of each conjugate pair, by ascending magnitude."""
-        poles = np.concatenate([np.linalg.eigvals(state_matrix(part.own)) for part in self.parts]).astype(complex)
+        own = [np.tile(np.linalg.eigvals(state_matrix(part.own)), len(dofs)) for part, dofs, _ in self.alike]
+        poles = np.concatenate(own).astype(complex)
         upper = poles[poles.imag >= 0]
         return upper[np.argsort(np.abs(upper), kind="stable")]
 
@@ -261,9 +283,9 @@ class Dynamics:
         cases = displacement.shape[:-2]
         motion = np.empty((*cases, self.dofs, omega.size), complex)
         force = np.empty((*cases, self.contacts, omega.size), complex)
-        for part in self.parts:
-            below = displacement[..., part.contacts, :]
-            motion[..., part.dofs, :], force[..., part.contacts, :] = part.response(omega, below)
+        for part, dofs, contacts in self.alike:
+            below = displacement[..., contacts, :]
+            motion[..., dofs, :], force[..., contacts, :] = part.response(omega, below)
         return motion, force
 
     def stiffness(self, omega: ComplexArray) -> ComplexArray:
@@ -284,8 +306,8 @@ class Dynamics:
         if len(self.parts) == 1:
             return self.parts[0].stiffness(omega)
         stiffness = np.zeros((self.contacts, self.contacts, omega.size), complex)
-        for part in self.parts:
-            stiffness[part.contacts[:, None], part.contacts] = part.stiffness(omega)
+        for part, _, contacts in self.alike:
+            stiffness[contacts[:, :, None], contacts[:, None]] = part.stiffness(omega)
         return stiffness
 
 
@@ -315,7 +337,8 @@ def parts(
     """
     whole = Quadratic.of(mass, damping, stiffness)
     groups = _connected(np.sum([np.abs(part) for part in whole], axis=0), contact_map)
-    return tuple(_part(whole, contact_map, springs, dashpots, dofs) for dofs in groups)
+    found: dict[tuple[bytes, ...], Part] = {}
+    return tuple(_part(whole, contact_map, springs, dashpots, dofs, found) for dofs in groups)
 
 
 def held(
@@ -331,11 +354,20 @@ def held(
 
 
 def _part(
-    whole: Quadratic, contact_map: FloatArray, springs: FloatArray, dashpots: FloatArray, dofs: IntArray
+    whole: Quadratic,
+    contact_map: FloatArray,
+    springs: FloatArray,
+    dashpots: FloatArray,
+    dofs: IntArray,
+    found: dict[tuple[bytes, ...], Part],
 ) -> Part:
+    """Make a part; of those that are the same as one that was found, only where they stand is new."""
     contacts = np.flatnonzero(np.abs(contact_map[:, dofs]).any(axis=1))
     rows, springs, dashpots = contact_map[np.ix_(contacts, dofs)], springs[contacts], dashpots[contacts]
     own = Quadratic(*(part[np.ix_(dofs, dofs)] for part in whole))
+    same = tuple(part.tobytes() for part in (*own, rows, springs, dashpots))
+    if same in found:
+        return replace(found[same], dofs=dofs, contacts=contacts)
     motion = split(rows, np.isinf(springs))
     assert motion is not None  # the vehicle has checked that
     impedance, elastic, k = held(own, rows, springs, dashpots)
@@ -348,7 +380,8 @@ def _part(
         )
     )
     own = impedance.mapped(free.T, free)
-    return Part(dofs, contacts, motion, own, entry, direct, _modes(own))
+    found[same] = Part(dofs, contacts, motion, own, entry, direct, _modes(own))
+    return found[same]
 
 
 def _connected(coupling: FloatArray, contact_map: FloatArray) -> Sequence[IntArray]:
