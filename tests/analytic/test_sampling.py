@@ -348,7 +348,7 @@ def test_a_second_look_is_like_a_first_one(less):
     """Where less turns out to be negligible, coarser steps are not looked at again: with the same outcome."""
     system, line = (
         System(guideway=TRACK, vehicle=HERTZ, speed=20.0),
-        Line(samples=500, time_step=2e-3, settling=0.5),
+        Line(samples=500, time_step=2e-3),
     )
     corners, looks = np.random.default_rng(0).normal(size=26), [0]
 

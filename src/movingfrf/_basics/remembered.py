@@ -54,16 +54,41 @@ def remembered(compute: Callable[[Any], Implied]) -> Callable[[Any], Implied]:
     """
 
     @wraps(compute)
-    def recalled(value: Any) -> Implied:
-        if not hasattr(value, "_implied"):
-            object.__setattr__(value, "_implied", {})
-        implied: dict[str, Implied] = value._implied
-        name = compute.__name__
-        if name not in implied:
-            implied[name] = _sealed(compute(value))
-        return implied[name]
+    def asked(value: Any) -> Implied:
+        return recalled(value, compute.__name__, None, lambda: compute(value))
 
-    return recalled
+    return asked
+
+
+def recalled(value: Any, name: str, of: object, compute: Callable[[], Implied]) -> Implied:
+    """Remember what a value and something else imply together; of each name the latest alone.
+
+    Parameters
+    ----------
+    value : Remembering
+        What remembers.
+    name : str
+        What is remembered.
+    of : object
+        The other thing: if it is not the one that it was of, it is computed afresh.
+    compute : callable
+        Computes it, without arguments. What it returns is shared, as for `remembered`.
+
+    Returns
+    -------
+    object
+        What is implied.
+    """
+    try:
+        implied: dict[str, tuple[object, Implied]] = value._implied
+    except AttributeError:
+        implied = {}
+        object.__setattr__(value, "_implied", implied)
+    known = implied.get(name)
+    if known is None or not (known[0] is of or known[0] == of):
+        known = of, _sealed(compute())
+        implied[name] = known
+    return known[1]
 
 
 def _sealed(implied: Implied) -> Implied:

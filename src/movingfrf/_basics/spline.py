@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dgtsv
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.compiling import compiled
 from movingfrf._basics.values import Value
 
 
@@ -47,6 +48,8 @@ class Piecewise(Value):
         """
         places = np.asarray(at, dtype=float)
         flat = places.ravel()
+        if self.c.ndim == 2 and (loops := compiled("_basics.compiled", flat.size // 16)):
+            return loops.piecewise(self.x, self.c, flat, order).reshape(places.shape)
         inner = self.x[1:-1]
         first, last = np.searchsorted(inner, flat[[0, -1]], side="right").tolist() if flat.size else (0, 0)
         if flat.size > last - first > 0 and (flat[1:] >= flat[:-1]).all():

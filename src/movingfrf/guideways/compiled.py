@@ -173,8 +173,9 @@ def waves(above, below, size, by_omega, omega, uncertain, search):
 
 
 @loop
-def summed(kappa, weight, forward, ahead, frf):
+def summed(kappa, weight, forward, ahead):
     """Sum the waves that are met at each offset; as `Waves.summed`."""
+    frf = np.empty((ahead.size, kappa.shape[1]), np.complex128)
     for row in range(ahead.size):
         offset = ahead[row]
         for at in range(kappa.shape[1]):
@@ -188,3 +189,4 @@ def summed(kappa, weight, forward, ahead, frf):
                         turn = kappa[n, at].real * offset
                         total += weight[n, at] * complex(left * math.cos(turn), left * math.sin(turn))
             frf[row, at] = total if offset >= 0.0 else -total
+    return frf

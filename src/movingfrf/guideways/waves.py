@@ -160,9 +160,7 @@ class Waves(NamedTuple):
         if derivative:
             weight = weight * (1j * kappa) ** derivative
         if loops := compiled("guideways.compiled", kappa.size * ahead.size):
-            frf = np.empty((ahead.size, kappa.shape[1]), complex)
-            loops.summed(kappa, weight, forward, ahead, frf)
-            return frf
+            return loops.summed(kappa, weight, forward, np.require(ahead, requirements="CW"))
         frf = np.zeros((ahead.size, kappa.shape[1]), complex)
         for direction in (True, False):
             here = np.flatnonzero((ahead >= 0) == direction)
@@ -176,7 +174,26 @@ class Waves(NamedTuple):
         return frf
 
 
-def waves(stiffness: Ratio, speed: float, omega: ComplexArray) -> Waves:
+class Seen(NamedTuple):
+    """A dynamic stiffness as an observer who travels along sees it: tables in (κ, iω)."""
+
+    above: ComplexArray  # numerator D
+    below: ComplexArray  # denominator N
+    size: FloatArray  # sum of the magnitudes of the terms of D, in |κ| and |ω|
+    by_omega: ComplexArray  # derivative of D by ω
+
+    @classmethod
+    def of(cls, stiffness: Ratio, speed: float) -> Seen:
+        """Look at a dynamic stiffness [N/m²] at some speed [m/s]."""
+        above, below = (in_moving_frame(table, speed) for table in (stiffness.above, stiffness.below))
+        size = _expanded(np.abs(stiffness.above), abs(speed)).real.copy()
+        seen = cls(above, below, size, in_moving_frame(_by_omega(stiffness.above), speed))
+        for table in seen:
+            table.setflags(write=False)
+        return seen
+
+
+def waves(seen: Seen, speed: float, omega: ComplexArray) -> Waves:
     """Find the free waves of a guideway, and on which side of a source each is met.
 
     The moving FRF is the inverse Fourier integral over κ, its contour closed. For receivers ahead of the source
@@ -185,8 +202,8 @@ def waves(stiffness: Ratio, speed: float, omega: ComplexArray) -> Waves:
 
     Parameters
     ----------
-    stiffness : Ratio
-        Dynamic stiffness of the guideway [N/m²].
+    seen : Seen
+        Dynamic stiffness of the guideway at that speed [N/m²].
     speed : float
         Common speed of source and receiver [m/s].
     omega : ndarray, shape (frequency,)
@@ -205,18 +222,15 @@ def waves(stiffness: Ratio, speed: float, omega: ComplexArray) -> Waves:
     if not omega.size:
         nothing = np.zeros((0, 0), complex)
         return Waves(nothing, nothing, nothing.real > 0)
-    above, below = (in_moving_frame(table, speed) for table in (stiffness.above, stiffness.below))
-    # What rounding may make of D, and what a change of ω does.
-    size = _expanded(np.abs(stiffness.above), abs(speed)).real
-    by_omega = in_moving_frame(_by_omega(stiffness.above), speed)
     uncertain = ROOTS.rounding_errors * np.finfo(float).eps
-    with np.errstate(all="ignore"):
-        if loops := compiled("guideways.compiled", (len(above) - 1) * omega.size):
-            found, infinite = loops.waves(above, below, size, by_omega, omega, uncertain, ROOTS.numbers)
-        else:
-            found, infinite = _waves(above, below, size, by_omega, omega, uncertain)
-    bad = infinite | ~np.isfinite(found[1]).all(axis=0)
-    if bad.any():
+    if loops := compiled("guideways.compiled", (len(seen.above) - 1) * omega.size):
+        found, infinite = loops.waves(*seen, np.require(omega, requirements="CW"), uncertain, ROOTS.numbers)
+    else:
+        with np.errstate(all="ignore"):
+            found, infinite = _waves(seen, omega, uncertain)
+    # A sum is finite only if all of its terms are.
+    if infinite.any() or not np.isfinite(found[1].sum()):
+        bad = infinite | ~np.isfinite(found[1]).all(axis=0)
         frequency = omega[bad.argmax()] / (2 * np.pi)
         raise SolveError(
             f"the moving FRF is infinite at {frequency.real:.6g} Hz and {speed:.6g} m/s: an undamped resonance"
@@ -226,35 +240,19 @@ def waves(stiffness: Ratio, speed: float, omega: ComplexArray) -> Waves:
 
 
 def _waves(
-    above: ComplexArray,
-    below: ComplexArray,
-    size: FloatArray,
-    by_omega: ComplexArray,
-    omega: ComplexArray,
-    uncertain: float,
+    seen: Seen, omega: ComplexArray, uncertain: float
 ) -> tuple[tuple[ComplexArray, ComplexArray, BoolArray], BoolArray]:
     """Find waves, and at which frequencies two of them meet from both sides; `compiled.waves` in NumPy.
 
-    Parameters
-    ----------
-    above, below : ndarray, shape (power of κ, power of iω)
-        Numerator and denominator of the dynamic stiffness in the moving frame.
-    size : ndarray, shape (power of κ, power of iω)
-        Sum of the magnitudes of the terms of the numerator, in |κ| and |ω|.
-    by_omega : ndarray, shape (power of κ, power of iω)
-        Derivative of the numerator by ω.
-    omega : ndarray, shape (frequency,)
-        Frequency [rad/s].
-    uncertain : float
-        Share of that sum which counts as nothing.
+    What is less than the share `uncertain` of all terms of D counts as nothing.
     """
     s = 1j * omega
-    denominator = at_frequencies(above, s)
+    denominator = at_frequencies(seen.above, s)
     kappa = wavenumbers(denominator)
     slope = evaluated(slopes(denominator), kappa)
-    weight = evaluated(at_frequencies(below, s), kappa) * inverse(slope)
+    weight = evaluated(at_frequencies(seen.below, s), kappa) * inverse(slope)
     side, infinite = kappa.imag, np.zeros(omega.size, bool)
-    doubt = uncertain * evaluated(at_frequencies(size, np.abs(omega)), np.sqrt(squared(kappa)))
+    doubt = uncertain * evaluated(at_frequencies(seen.size, np.abs(omega)), np.sqrt(squared(kappa)))
     # To first order D is D′ times the distance from a root.
     doubtful = side * side * squared(slope) <= doubt * doubt
     if doubtful.any():
@@ -263,7 +261,7 @@ def _waves(
         bend = evaluated(slopes(slopes(denominator)), kappa)
         infinite = (doubtful & (squared(slope) <= 2 * doubt * np.abs(bend))).any(axis=0)
         # Im κ(ω − i0⁺) has the sign of Re(∂D/∂ω ÷ ∂D/∂κ).
-        side = np.where(doubtful, (evaluated(at_frequencies(by_omega, s), kappa) / slope).real, side)
+        side = np.where(doubtful, (evaluated(at_frequencies(seen.by_omega, s), kappa) / slope).real, side)
     return (kappa, 1j * weight, side > 0), infinite
 
 
@@ -300,7 +298,7 @@ def residue_sum(
     SolveError
         If the response is infinite: an undamped guideway at a cut-off frequency or a critical speed.
     """
-    return waves(stiffness, speed, omega).summed(ahead, derivative)
+    return waves(Seen.of(stiffness, speed), speed, omega).summed(ahead, derivative)
 
 
 ONE = polynomial({(0, 0): 1.0})

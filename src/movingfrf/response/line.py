@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory
 from movingfrf._basics.checks import checking
+from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf._basics.smooth import memory, onward, smooth_step, smoothest_step
 from movingfrf._basics.spline import cubic
 
@@ -82,7 +83,7 @@ class Histories(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Line:
+class Line(Remembering):
     """A record in time and the complex frequencies that stand for it.
 
     X(ω) = ∫ x(t) e^{−iωt} dt, evaluated along ω − iη (exponential window, Kausel and Roësset 1992). The discrete
@@ -107,7 +108,7 @@ class Line:
 
     Examples
     --------
-    >>> line = Line(samples=1000, time_step=1e-3, settling=1.0, points=8000)
+    >>> line = Line(samples=1000, time_step=1e-3, points=8000)
     >>> spectrum = line.spectra(Given(np.sin(2 * np.pi * 5 * line.instants) ** 3))
     >>> bool(np.allclose(line.records(spectrum).values, np.sin(2 * np.pi * 5 * line.time) ** 3, atol=1e-6))
     True
@@ -129,6 +130,7 @@ class Line:
             check.not_negative("fading", self.fading, "s")
 
     @property
+    @remembered
     def decay(self) -> float:
         """Distance η of the line of evaluation from the real axis [rad/s]."""
         return min(math.log(TRANSFORM.growth) / self.duration, TRANSFORM.within * 2 * math.pi * self.cut)
@@ -139,6 +141,7 @@ class Line:
         return self.samples * self.time_step
 
     @property
+    @remembered
     def needed(self) -> float:
         """Time until all is over that would come back [s]: the record, the fading, and time to die away."""
         over = self.duration + self.fading
@@ -148,6 +151,7 @@ class Line:
         return max(dead, over, self.duration + TRANSFORM.least * self.time_step)
 
     @property
+    @remembered
     def padded(self) -> int:
         """Steps of the record per period: what is needed, and what makes their number factorise."""
         return int(scipy.fft.next_fast_len(math.ceil(self.needed / self.time_step), real=True))
@@ -173,6 +177,7 @@ class Line:
         return np.arange(self.samples) * self.time_step
 
     @property
+    @remembered
     def _faded_within(self) -> float:
         """Time past the end of the record in which what drives the system fades out [s]."""
         padding = self.period - self.samples * self.time_step

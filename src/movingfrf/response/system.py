@@ -14,8 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
+from movingfrf._basics.remembered import Remembering, recalled, remembered
+from movingfrf._basics.values import Value
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.response.along import Along, Order, in_order, with_diagonal
 from movingfrf.response.batches import BATCH, applied, multiplied, solved
@@ -116,6 +117,13 @@ class System(Remembering):
     vehicle: Vehicle
     speed: float
 
+    @classmethod
+    def of(cls, guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
+        """Put a vehicle on a guideway; on the one that it was on before, with all that is known of both."""
+        made = cls(guideway=guideway, vehicle=vehicle, speed=speed)
+        # What is no value may be another one by now. The one that is remembered keeps its guideway, and so its number.
+        return recalled(vehicle, "system", (id(guideway), speed), lambda: made) if isinstance(guideway, Value) else made
+
     @property
     def dynamics(self) -> Dynamics:
         """The vehicle at its contacts."""
@@ -150,12 +158,23 @@ class System(Remembering):
         contacts, dofs = self.dynamics.contacts, self.dynamics.dofs
         return contacts, contacts, dofs, dofs
 
+    @property
+    @remembered
+    def offsets(self) -> tuple[FloatArray, IntArray]:
+        """Distinct offsets along the guideway [m], and which of them is that of a contact from a contact."""
+        distinct, which = np.unique(self.vehicle.offsets["ahead"], return_inverse=True)
+        return distinct, which.reshape(self.ports, self.ports)
+
     def at(self, omega: ComplexArray) -> Tables | Along:
         """Evaluate both sides at some frequencies [rad/s]."""
+        if not hasattr(self.guideway, "waves"):
+            frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
+            return Tables(omega, np.moveaxis(frf, 0, -1), self.dynamics.stiffness(omega))
+        waves = self.guideway.waves(self.speed, omega)
         if self.train:
-            return Along(self.train, omega, self.guideway.waves(self.speed, omega))  # type: ignore[attr-defined]
-        frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
-        return Tables(omega, np.moveaxis(frf, 0, -1), self.dynamics.stiffness(omega))
+            return Along(self.train, omega, waves)
+        distinct, which = self.offsets
+        return Tables(omega, waves.summed(distinct)[which], self.dynamics.stiffness(omega))
 
     def at_each(self, omegas: Sequence[ComplexArray]) -> Iterator[Tables | Along]:
         """Evaluate both sides at sets of frequencies [rad/s], as many sets in one go as a batch holds."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.values import Listed
@@ -251,29 +251,34 @@ def labelled(values: Mapping[str, ArrayLike], attributes: Mapping[str, str | flo
         of one unit.
     """
     import xarray as xr
+    from xarray.indexes import PandasIndex
 
     schema = SCHEMAS[str(attributes["kind"])]
+    arrays = {name: np.asarray(value) for name, value in values.items()}
     of_dofs = {str(unit) for unit in np.asarray(values.get("dof_unit", ()))}
     data: dict[str, xr.Variable] = {}
     coordinates: dict[str, xr.Variable] = {}
-    for name, value in values.items():
+    indexes: dict[str, PandasIndex] = {}
+    for name, value in arrays.items():
         label = schema[name]
         units = {unit_of(label.units, dof_unit) for dof_unit in of_dofs or {""}}
         said = {"units": units.pop()} if len(units) == 1 else {"comment": f"in {label.units}, as dof_unit says"}
-        variable = xr.Variable(label.dims, np.asarray(value), {**said, "long_name": label.long_name})
+        variable = xr.Variable(label.dims, value, {**said, "long_name": label.long_name})
+        if label.dims == (name,):
+            # Made here: xarray would find out that they are needed, in twice the time.
+            indexes[name] = PandasIndex(value, name)
+            variable = indexes[name].create_variables({name: variable})[name]
         if label.coordinate:
             variable.encoding["_FillValue"] = None  # of a coordinate nothing is missing
         (coordinates if label.coordinate else data)[name] = variable
-    found = xr.Dataset(data, coordinates, dict(attributes))
-    return found.assign_attrs(Conventions="CF-1.11") if _keeps_cf(found) else found
+    kept = {"Conventions": "CF-1.11"} if _keeps_cf(arrays, indexes) else {}
+    return xr.Dataset(data, xr.Coordinates(coordinates, indexes), {**attributes, **kept})
 
 
-def _keeps_cf(result: xr.Dataset) -> bool:
+def _keeps_cf(arrays: Mapping[str, NDArray[Any]], along: Iterable[str]) -> bool:
     """Whether what the CF conventions ask of numbers is so: they are real, and those along a dimension in order."""
-    steps = [
-        np.diff(each) for each in (index.values for index in result.indexes.values()) if each.dtype.kind in "if"
-    ]
-    real = all(variable.dtype.kind != "c" for variable in result.variables.values())
+    steps = [np.diff(arrays[name]) for name in along if arrays[name].dtype.kind in "if"]
+    real = all(array.dtype.kind != "c" for array in arrays.values())
     return real and all((step > 0).all() or (step < 0).all() for step in steps)
 
 

@@ -88,41 +88,66 @@ class Touch:
 class Along(NamedTuple):
     """One path about its datum and a grade, straight before its beginning, smooth past its end."""
 
+    spline: Piecewise  # elevation [m]
     datum: float  # [m]
-    level: Piecewise
-    ends: float  # where the profile ends [m]
+    datum_at: float  # where that is counted from [m]
+    grade: float  # [m/m]
+    onward: Piecewise  # how it goes on past its end, counted from there [m]
     fades: float  # over how many metres slope and curvature fade from there on
 
     @classmethod
     def of(cls, spline: Piecewise, datum_at: float, grade: float) -> Along:
         """Prepare one path of a profile."""
         datum, stations = float(spline(datum_at)), spline.x
-        level = spline.c.copy()
-        level[3] -= datum + grade * (stations[:-1] - datum_at)
-        level[2] -= grade
-        about = Piecewise(stations, level)
         # Past the end slope and curvature fade, over a length that adds no frequencies.
-        end, slope, curvature = (float(about(stations[-1], order)) for order in range(3))
-        extent = stations[-1] - stations[0]
-        latest = level[:, -SEEING.together :]
-        length = float(memory(latest[2], 2.0 * latest[1]))
-        length = min(max(length, SEEING.fewest * extent / level.shape[1]), SEEING.longest * extent)
+        end, slope, curvature = (float(spline(stations[-1], order)) for order in range(3))
+        end, slope = end - datum - grade * (float(stations[-1]) - datum_at), slope - grade
+        extent = float(stations[-1] - stations[0])
+        latest = spline.c[:, -SEEING.together :]
+        length = float(memory(latest[2] - grade, 2.0 * latest[1]))
+        length = min(max(length, SEEING.fewest * extent / spline.c.shape[1]), SEEING.longest * extent)
         after = np.linspace(0.0, length, SEEING.pieces + 1)
         fading = cubic(after, end + onward(after, slope, curvature, length), first=slope, last=0.0)
-        before, beyond = np.zeros((4, 1)), np.zeros((4, 1))
-        before[2, 0], before[3, 0] = level[2, 0], level[3, 0] - level[2, 0]
-        beyond[3, 0] = end
-        places = np.concatenate(
-            [[stations[0] - 1.0], stations, stations[-1] + after[1:], [stations[-1] + length + 1.0]]
-        )
-        pieces = Piecewise(places, np.hstack([before, level, fading.c, beyond]))
-        return cls(datum, pieces, float(stations[-1]), length)
+        flat = np.zeros((4, 1))
+        flat[3] = end
+        goes_on = Piecewise(np.append(after, length + 1.0), np.hstack([fading.c, flat]))
+        return cls(spline, datum, datum_at, grade, goes_on, length)
+
+    @property
+    def ends(self) -> float:
+        """Where the profile ends [m]."""
+        return float(self.spline.x[-1])
+
+    def level(self, distance: FloatArray, order: int = 0) -> FloatArray:
+        """Elevation about datum and grade within the profile, or a derivative of it."""
+        found = self.spline(distance, order)
+        if order == 0:
+            found -= self.datum + self.grade * (distance - self.datum_at)
+        elif order == 1:
+            found -= self.grade
+        return found
+
+    def between(self, first: float, last: float) -> Piecewise:
+        """Elevation about datum and grade from one place to another [m], within the profile or beyond."""
+        stations, count = self.spline.x, self.spline.c.shape[1]
+        begin, end = np.searchsorted(stations, [first, last], side="right").tolist()
+        begin, end = min(max(begin - 1, 0), count - 1), min(max(end, 1), count)
+        places, pieces = stations[begin : end + 1], self.spline.c[:, begin:end].copy()
+        pieces[3] -= self.datum + self.grade * (places[:-1] - self.datum_at)
+        pieces[2] -= self.grade
+        if first < stations[0]:
+            straight = np.zeros((4, 1))
+            straight[2], straight[3] = pieces[2, 0], pieces[3, 0] - pieces[2, 0]
+            places, pieces = np.append(places[0] - 1.0, places), np.hstack([straight, pieces])
+        if last > stations[-1]:
+            places = np.append(places, stations[-1] + self.onward.x[1:])
+            pieces = np.hstack([pieces, self.onward.c])
+        return Piecewise(places, pieces)
 
     def seen(self, distance: FloatArray, footprint: float, cams: float, derivative: int = 0) -> FloatArray:
         """Average elevation about the datum [m], or its slope [m/m], at ascending distances [m]."""
         if not footprint and not cams:
-            found: FloatArray = self.level(distance, derivative)
-            return found
+            return self.between(*distance[[0, -1]].tolist())(distance, derivative) if distance.size else distance
         found = np.empty_like(distance)
         for first in range(0, distance.size, SEEING.together):
             some = slice(first, first + SEEING.together)
@@ -135,7 +160,7 @@ class Along(NamedTuple):
         Guesses past places within the profile are off from what is there; an axis of guesses comes first.
         """
         last = self.ends - reach
-        span = max(min(SEEING.apart * SEEING.guesses * reach, last - self.level.x[1]), 0.0)
+        span = max(min(SEEING.apart * SEEING.guesses * reach, last - float(self.spline.x[0])), 0.0)
         here = last - span * np.linspace(0.0, 1.0, SEEING.guesses)[:, None]
         beyond = np.linspace(0.0, reach, SEEING.pieces + 1)
         guessed = onward(beyond, self.level(here, 1), self.level(here, 2), self.fades)
@@ -148,13 +173,11 @@ class Along(NamedTuple):
         The area under a road grows with the road's length and climb, and a difference of two such areas would have
         lost the digits that roughness needs.
         """
-        places, begun, reach = self.level.x, distance[0], 0.5 * (footprint + cams)
-        # A stretch may lie beyond all places: there the last piece goes on.
-        first = min(max(int(np.searchsorted(places, begun - reach)) - 1, 0), places.size - 2)
-        last = max(int(np.searchsorted(places, distance[-1] + reach)), first + 1)
-        pieces, height = self.level.c[:, first:last].copy(), self.level(begun)
-        pieces[3] -= height
-        here = Piecewise(places[first : last + 1] - begun, pieces)
+        begun, reach = float(distance[0]), 0.5 * (footprint + cams)
+        around = self.between(begun - reach, float(distance[-1]) + reach)
+        height = float(around(begun))
+        around.c[3] -= height
+        here = Piecewise(around.x - begun, around.c)
         # Where it rises, the level is the integral of the slope.
         integral = here if derivative else here.antiderivative()
         at = (distance - begun) + 0.5 * cams * np.array([[-1.0], [1.0]] if cams else [[0.0]])

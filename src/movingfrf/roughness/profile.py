@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.door import mistaken
+from movingfrf._basics.remembered import Remembering, recalled
 from movingfrf._basics.spline import Piecewise, cubic
 from movingfrf._basics.values import Value, brief
 from movingfrf._basics.wording import told_apart
@@ -21,7 +22,7 @@ SLACK = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Profile(Value):
+class Profile(Remembering, Value):
     """Elevation of a road over distance; between its samples a cubic spline.
 
     Parameters
@@ -228,6 +229,13 @@ class Profile(Value):
             Callable with any array of distances [m] on the profile; gives elevations [m], or with a second argument
             a derivative of that order.
         """
+        # Of so many stations, tens of kilometres, it is made whenever it is asked for, and not kept [memory only].
+        many = 2**20
+        if self.stations.size > many:
+            return self._along(path)
+        return recalled(self, f"along path {path}", None, lambda: self._along(path))
+
+    def _along(self, path: int) -> Piecewise:
         elevation = np.asarray(self.elevation)
         return cubic(self.stations, elevation if elevation.ndim == 1 else elevation[:, path])
 

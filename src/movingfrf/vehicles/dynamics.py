@@ -134,11 +134,44 @@ def split(contact_map: FloatArray, rigid: BoolArray) -> Split | None:
 
 
 class Modes(NamedTuple):
-    """Poles and residues of P⁻¹: the vehicle on its contact springs, the guideway held still."""
+    """Poles and residues of P⁻¹: the vehicle on its contact springs, the guideway held still.
+
+    What has a coefficient for each power of iω has None for those that are zero.
+    """
 
     poles: ComplexArray  # (mode,)
     shapes: ComplexArray  # (free, mode)
-    weights: ComplexArray  # (mode, free), what a force on a coordinate feeds into a mode
+    entered: tuple[ComplexArray | None, ...]  # (mode, contact), what a displacement below a contact feeds into it
+    carried: tuple[ComplexArray | None, ...]  # (contact², mode), what of it comes back to the contacts
+
+    @classmethod
+    def of(cls, own: Quadratic, entry: Quadratic) -> Modes | None:
+        """Take P and H apart; None if a mode is defective, or so nearly that it carries no digits."""
+        dofs, contacts = len(own.constant), entry.constant.shape[1]
+        if not dofs:
+            return None
+        poles, vectors = np.linalg.eig(state_matrix(own))
+        # Displacement and velocity in one unit each, else the condition number measures the units.
+        vectors[dofs:] /= np.abs(poles).max()
+        vectors /= np.linalg.norm(vectors, axis=0)
+        try:
+            inverse = np.linalg.inv(vectors)
+        except np.linalg.LinAlgError:
+            return None
+        if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < SOLUTION.worst_condition:
+            return None
+        weights = np.linalg.solve(own.square, inverse[:, dofs:].T).T / np.abs(poles).max()
+        shapes = vectors[:dofs].astype(complex)
+        carried = np.zeros((5, contacts, contacts, poles.size), complex)
+        for power_out, out in entry.terms():
+            for power_in, into in entry.terms():
+                carried[power_out + power_in] += (out.T @ shapes)[:, None, :] * (weights @ into).T
+        return cls(
+            poles.astype(complex),
+            shapes,
+            tuple((weights @ part).astype(complex) if part.any() else None for part in entry),
+            tuple(part.reshape(contacts**2, -1) if part.any() else None for part in carried),
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -191,11 +224,11 @@ class Part:
             columns = np.moveaxis(pushed.reshape(-1, *pushed.shape[-2:]), (2, 1), (0, 1))
             free = np.linalg.solve(np.moveaxis(self.own.at(omega), -1, 0), columns)
             return np.moveaxis(free, (0, 1), (2, 1)).reshape(pushed.shape)
-        poles, shapes, weights = self.modes
-        entered = (weights @ part @ displacement if part.any() else None for part in self.entry)
-        modal = _horner(1j * omega, list(entered), (*displacement.shape[:-2], len(poles), omega.size))
-        modal *= _admittance(omega, poles)
-        return shapes @ modal
+        modes = self.modes
+        entered = [None if part is None else part @ displacement for part in modes.entered]
+        modal = _horner(1j * omega, entered, (*displacement.shape[:-2], modes.poles.size, omega.size))
+        modal *= _admittance(omega, modes.poles)
+        return modes.shapes @ modal
 
     def stiffness(self, omega: ComplexArray) -> ComplexArray:
         """Dynamic stiffness D = E − Hᵀ P⁻¹ H at its contacts, shape (contact, contact, frequency)."""
@@ -205,15 +238,10 @@ class Part:
         if self.modes is None:
             entry, own = (np.moveaxis(part.at(omega), -1, 0) for part in (self.entry, self.own))
             return direct - np.moveaxis(entry.swapaxes(1, 2) @ np.linalg.solve(own, entry), 0, -1)
-        poles, shapes, weights = self.modes
-        count, admittance = len(self.contacts), _admittance(omega, poles)
+        admittance = _admittance(omega, self.modes.poles)
         # Hᵀ P⁻¹ H power by power of iω: each is a sum over modes, one product of matrices for all frequencies.
-        carried = np.zeros((5, count, count, len(poles)), complex)
-        for power_out, out in self.entry.terms():
-            for power_in, into in self.entry.terms():
-                carried[power_out + power_in] += (out.T @ shapes)[:, None, :] * (weights @ into).T
-        terms = [part.reshape(count * count, -1) @ admittance if part.any() else None for part in carried]
-        direct -= _horner(1j * omega, terms, (count * count, omega.size)).reshape(direct.shape)
+        terms = [None if part is None else part @ admittance for part in self.modes.carried]
+        direct -= _horner(1j * omega, terms, (direct[..., 0].size, omega.size)).reshape(direct.shape)
         return direct
 
 
@@ -380,7 +408,7 @@ def _part(
         )
     )
     own = impedance.mapped(free.T, free)
-    found[same] = Part(dofs, contacts, motion, own, entry, direct, _modes(own))
+    found[same] = Part(dofs, contacts, motion, own, entry, direct, Modes.of(own, entry))
     return found[same]
 
 
@@ -398,25 +426,6 @@ def state_matrix(own: Quadratic) -> FloatArray:
     mass = own.square
     rates = np.linalg.solve(mass, np.hstack([-own.constant, -own.linear]))
     return np.vstack([np.hstack([np.zeros_like(mass), np.eye(len(mass))]), rates])
-
-
-def _modes(own: Quadratic) -> Modes | None:
-    """Poles and residues; None if a mode is defective, or so nearly that it carries no digits."""
-    dofs = len(own.constant)
-    if not dofs:
-        return None
-    poles, vectors = np.linalg.eig(state_matrix(own))
-    # Displacement and velocity in one unit each, else the condition number measures the units.
-    vectors[dofs:] /= np.abs(poles).max()
-    vectors /= np.linalg.norm(vectors, axis=0)
-    try:
-        inverse = np.linalg.inv(vectors)
-    except np.linalg.LinAlgError:
-        return None
-    if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < SOLUTION.worst_condition:
-        return None
-    weights = np.linalg.solve(own.square, inverse[:, dofs:].T).T / np.abs(poles).max()
-    return Modes(poles, vectors[:dofs], weights)
 
 
 def _admittance(omega: ComplexArray, poles: ComplexArray) -> ComplexArray:
