@@ -64,8 +64,8 @@ FAULTS = [
     Fault(
         "early counts more than late",
         "response/line.py",
-        "np.abs(together(self._parts(given, 0.0)))",
-        "np.abs(together(self._parts(given, self.decay)))",
+        "self._parts(given, (self.decay, 0.0))",
+        "self._parts(given, (self.decay, self.decay))",
     ),
     Fault(
         "nothing is unresolved",
@@ -80,15 +80,20 @@ FAULTS = [
         "if cut.error <= SAMPLING.estimated or",
         "if True or",
     ),
-    Fault("whole weight at the start", "response/line.py", "padded[:, 0] *= 0.5", "padded[:, 0] *= 1.0"),
+    Fault("whole weight at the start", "response/line.py", "there[:, 0] *= 0.5", "there[:, 0] *= 1.0"),
     Fault(
         "record stops at its end",
         "response/line.py",
-        "padded[:, fading : instants.size] *= fade",
-        "padded[:, fading : instants.size] *= 0.0",
+        "np.multiply(rows[some, fading:], fade, out",
+        "np.multiply(rows[some, fading:], 0.0, out",
     ),
-    Fault("acceleration sign", "response/line.py", "factor = (1j * self.omega(", "factor = (1 * self.omega("),
-    Fault("velocity for acceleration", "response/system.py", "derivative=2", "derivative=1"),
+    Fault(
+        "acceleration sign",
+        "response/line.py",
+        "s = 1j * self.omega(slice(longest))",
+        "s = 1.0 * self.omega(slice(longest))",
+    ),
+    Fault("velocity for acceleration", "response/system.py", "(self.motion, 2)", "(self.motion, 1)"),
     # Coupling.
     Fault("roughness sign", "response/system.py", "displacement = -roughness", "displacement = +roughness"),
     Fault(
@@ -114,8 +119,8 @@ FAULTS = [
     Fault(
         "truncation of the first case only",
         "response/influence.py",
-        "cases = magnitudes.reshape(-1, *",
-        "cases = magnitudes[:1].reshape(-1, *",
+        "cases = energy.reshape(-1, *",
+        "cases = energy[:1].reshape(-1, *",
     ),
     Fault("ports without a diagonal", "response/along.py", "matrices[number, number] += 1.0", "pass"),
     # Trains, car by car.

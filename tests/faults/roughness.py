@@ -199,7 +199,7 @@ FAULTS = [
     ),
     Fault("seed ignored", "roughness/realisation.py", "default_rng(number)", "default_rng(0)"),
     Fault("second path is the first", "roughness/profile.py", "elevation[:, path]", "elevation[:, 0]"),
-    Fault("datum left in", "roughness/excitation.py", "level[3] -= datum + grade", "level[3] -= grade"),
+    Fault("datum left in", "roughness/excitation.py", "found -= self.datum\n", "found -= 0.0\n"),
     Fault(
         "blend twice as long",
         "roughness/excitation.py",
@@ -219,7 +219,7 @@ FAULTS = [
         "(self.start - position)",
     ),
     Fault("rate of the blending missing", "roughness/excitation.py", "smooth_step_slope(setting_in)", "0.0"),
-    Fault("average about the datum", "roughness/excitation.py", "pieces[3] -= height", "height = 0.0"),
+    Fault("average about the datum", "roughness/excitation.py", "around.c[3] -= height", "height = 0.0"),
     Fault(
         "cams one behind the other only", "roughness/excitation.py", "[[-1.0], [1.0]] if cams", "[[-1.0]] if cams"
     ),

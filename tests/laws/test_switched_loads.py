@@ -209,7 +209,7 @@ def test_an_abrupt_change_is_exact_in_the_spectrum():
     s = 1j * line.omega()
     wanted = np.exp(-(s + 2.0) * at) / (s + 2.0)
     given = Given(values, (Abrupt(at, 0, jumps),))
-    assert line.parts(given).shape == (2, 1, line.size)  # from t = 0 on, and from the change on
+    assert line.looked_at(given)[0].shape == (2, 1, line.size)  # from t = 0 on, and from the change on
     record = line.records(line.spectra(given)).values
     exact = line.records(wanted[None]).values
     assert np.abs(record - exact).max() < 1e-6

@@ -26,6 +26,13 @@ def finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
+def squared(values: NumberArray) -> FloatArray:
+    """Squared magnitude; several times faster than the magnitude."""
+    size: FloatArray = np.square(values.real)
+    size += np.square(values.imag)
+    return size
+
+
 def require_memory(needed: float, what: str) -> None:
     """Refuse a computation that would not fit into the free memory.
 
@@ -41,6 +48,10 @@ def require_memory(needed: float, what: str) -> None:
     ValueError
         If `needed` exceeds four fifths of the free memory.
     """
+    # What is there wherever anything is, in bytes: it takes longer to ask than to compute [2**20 to 2**26].
+    little = 2**24
+    if needed < little:
+        return
     # The share of the free memory that one computation may plan to take [a convention].
     share = 0.8
     available = free_memory()

@@ -16,23 +16,37 @@ def piecewise(knots, coefficients, at, order):
     for row in range(powers - order):
         for k in range(order):
             scale[row] *= powers - 1 - row - k
-    piece = 0
+    piece, last = 0, pieces - 1
+    begins, share = knots[0], pieces / (knots[pieces] - knots[0])
     for n in range(at.size):
         place = at[n]
-        if piece + 1 < pieces and place >= knots[piece + 1]:
-            piece += 1
-        # What ascends is in the same piece or the next one.
-        if (piece > 0 and place < knots[piece]) or (piece + 1 < pieces and place >= knots[piece + 1]):
-            low, high = 0, pieces - 1
-            while low < high:
-                middle = (low + high + 1) // 2
-                if place >= knots[middle]:
-                    low = middle
-                else:
-                    high = middle - 1
-            piece = low
-        value, beyond = 0.0, place - knots[piece]
-        for row in range(powers - order):
-            value = value * beyond + scale[row] * coefficients[row, piece]
-        found[n] = value
+        before, piece = piece, int(min(max((place - begins) * share, 0.0), float(last)))
+        # Knots are even as a rule; where they are not, what ascends is in the same piece or the next one; or it is
+        # sought.
+        for guess in range(3):
+            if (piece == 0 or place >= knots[piece]) and (piece == last or place < knots[piece + 1]):
+                break
+            if guess == 0:
+                piece = before
+            elif guess == 1:
+                piece = min(before + 1, last)
+            else:
+                low, high = 0, last
+                while low < high:
+                    middle = (low + high + 1) // 2
+                    if place >= knots[middle]:
+                        low = middle
+                    else:
+                        high = middle - 1
+                piece = low
+        beyond = place - knots[piece]
+        if powers == 4 and order == 0:
+            found[n] = (
+                (coefficients[0, piece] * beyond + coefficients[1, piece]) * beyond + coefficients[2, piece]
+            ) * beyond + coefficients[3, piece]
+        else:
+            value = 0.0
+            for row in range(powers - order):
+                value = value * beyond + scale[row] * coefficients[row, piece]
+            found[n] = value
     return found

@@ -16,18 +16,15 @@ from movingfrf._basics.ending import is_command
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Patience:
-    """How much is done in NumPy before numba is loaded, which takes some 0.4 s.
+    """How much the command does in NumPy before it loads numba; in brackets, between what the number is safe.
 
-    In brackets, between what each number is safe.
-
-    A unit of work is one wave, or one vibration of a vehicle, at one frequency: NumPy takes 0.1 to 0.2 µs longer
-    for it. Work is counted rather than timed, so that the same input takes the same way.
+    Numba takes some 0.4 s to load. A process that imports the package goes on, as a rule, with more of what it has
+    begun, and loads it at once. A command ends when it has done what it was asked for: loading must pay for itself.
     """
 
-    # A process that imports the package goes on, as a rule, with more of what it has begun.
-    session: int = 10_000  # [0 to 1e6: time only]
-    # A command ends when it has done what it was asked for: loading must pay for itself.
-    command: int = 3_000_000  # [1e6 to 1e7: time only]
+    # A unit of work is one wave, or one vibration of a vehicle, at one frequency: NumPy takes 0.1 to 0.2 µs longer.
+    # Work is counted rather than timed, so that the same input takes the same way.
+    work: int = 3_000_000  # [1e6 to 1e7: time only]
 
 
 PATIENCE = Patience()
@@ -64,7 +61,7 @@ def compiled(module: str, work: int) -> ModuleType | None:
         if not numba_is_there():
             return None
         _done[0] += work
-        if _done[0] <= (PATIENCE.command if is_command() else PATIENCE.session):
+        if is_command() and _done[0] <= PATIENCE.work:
             return None
     return _loaded(module) if _chosen[0] is not False else None
 

@@ -52,10 +52,14 @@ def remembered(compute: Callable[[Any], Implied]) -> Callable[[Any], Implied]:
     computed
     (3.0, 3.0)
     """
+    name = compute.__name__
 
     @wraps(compute)
     def asked(value: Any) -> Implied:
-        return recalled(value, compute.__name__, None, lambda: compute(value))
+        try:
+            return value._implied[name][1]
+        except (AttributeError, KeyError):
+            return recalled(value, name, None, lambda: compute(value))
 
     return asked
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray, NumberArray
+from movingfrf._basics.arrays import ComplexArray, squared
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,13 +76,6 @@ def wavenumbers(coefficients: ComplexArray) -> ComplexArray:
     if apart == 1:
         return anchors
     return _settled(coefficients, _between(_continued(anchors), apart)[:, :count])
-
-
-def squared(values: NumberArray) -> FloatArray:
-    """Squared magnitude; several times faster than the magnitude."""
-    size: FloatArray = np.square(values.real)
-    size += np.square(values.imag)
-    return size
 
 
 def inverse(values: ComplexArray) -> ComplexArray:

@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray
+from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray, squared
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.compiling import compiled
-from movingfrf.guideways.roots import ROOTS, inverse, squared, wavenumbers
+from movingfrf.guideways.roots import ROOTS, inverse, wavenumbers
 
 
 def polynomial(terms: dict[tuple[int, int], float]) -> FloatArray:
@@ -160,7 +160,7 @@ class Waves(NamedTuple):
         if derivative:
             weight = weight * (1j * kappa) ** derivative
         if loops := compiled("guideways.compiled", kappa.size * ahead.size):
-            return loops.summed(kappa, weight, forward, np.require(ahead, requirements="CW"))
+            return loops.summed(kappa, weight, forward, np.require(ahead, requirements=("C", "W")))
         frf = np.zeros((ahead.size, kappa.shape[1]), complex)
         for direction in (True, False):
             here = np.flatnonzero((ahead >= 0) == direction)
@@ -224,7 +224,7 @@ def waves(seen: Seen, speed: float, omega: ComplexArray) -> Waves:
         return Waves(nothing, nothing, nothing.real > 0)
     uncertain = ROOTS.rounding_errors * np.finfo(float).eps
     if loops := compiled("guideways.compiled", (len(seen.above) - 1) * omega.size):
-        found, infinite = loops.waves(*seen, np.require(omega, requirements="CW"), uncertain, ROOTS.numbers)
+        found, infinite = loops.waves(*seen, np.require(omega, requirements=("C", "W")), uncertain, ROOTS.numbers)
     else:
         with np.errstate(all="ignore"):
             found, infinite = _waves(seen, omega, uncertain)

@@ -90,7 +90,7 @@ class Influence:
         """Greatest share of each output, relative L2, from frequency number `first` to `end`; shape (output,)."""
         return np.sqrt(quotient(self.whole.between(self.starts, first, end), self.size).max(axis=0))
 
-    def negligible_from(self, share: Share, allowed: float, magnitudes: FloatArray) -> int:
+    def negligible_from(self, share: Share, allowed: float, energy: FloatArray) -> int:
         """Find the lowest frequency from which on a share of the outputs is negligible.
 
         Parameters
@@ -99,8 +99,8 @@ class Influence:
             `added` or `whole`.
         allowed : float
             What may be left of any output, relative L2.
-        magnitudes : ndarray, shape (*case, contact, frequency)
-            Of the spectra of what drives the system.
+        energy : ndarray, shape (*case, contact, frequency)
+            Squared magnitudes of the spectra of what drives the system.
 
         Returns
         -------
@@ -115,8 +115,8 @@ class Influence:
         band = int(harmful_bands[-1]) + 1
         # Within the last harmful band, frequency by frequency.
         first = int(self.starts[band - 1])
-        last = int(self.starts[band]) if band < len(self.starts) else magnitudes.shape[-1]
-        cases = magnitudes[..., first:last].reshape(-1, magnitudes.shape[-2], last - first)
+        last = int(self.starts[band]) if band < len(self.starts) else energy.shape[-1]
+        cases = np.sqrt(energy[..., first:last]).reshape(-1, energy.shape[-2], last - first)
         each = (share.gain[:, :, band - 1].T @ cases) ** 2
         tail = np.cumsum(each[:, :, ::-1], axis=2)[:, :, ::-1]
         if band < len(self.starts):
@@ -128,14 +128,12 @@ class Influence:
 def _bands(line: Line, truncation: float | None) -> IntArray:
     """Give the number of the first frequency of each band; one band begins beyond a stated truncation [Hz]."""
     edges = np.geomspace(1, line.size, TRUNCATION.bands + 1).astype(int)
-    beyond = min(Truncation.stated(truncation).untouched(line.omega()), line.size - 1)
+    beyond = min(Truncation.stated(truncation).harmonics(line.period, line.size), line.size - 1)
     starts = np.unique(np.r_[0, edges, beyond])
     return starts[starts < line.size]
 
 
-def influence(
-    system: Sized, line: Line, magnitudes: FloatArray, truncation: float | None, alike: float
-) -> Influence:
+def influence(system: Sized, line: Line, energy: FloatArray, truncation: float | None, alike: float) -> Influence:
     """Estimate outputs, and the guideway's part in them, from the system at the middle of each band.
 
     Over a band, √energy ≤ Σ_j |output per unit at port j| · √(energy at that port).
@@ -146,8 +144,8 @@ def influence(
         What is driven.
     line : Line
         The frequencies.
-    magnitudes : ndarray, shape (*case, port, frequency)
-        Of the spectra of what drives it.
+    energy : ndarray, shape (*case, port, frequency)
+        Squared magnitudes of the spectra of what drives it.
     truncation : float, optional
         Stated truncation [Hz]: one band begins beyond it.
     alike : float
@@ -161,8 +159,8 @@ def influence(
     starts = _bands(line, truncation)
     omega = line.omega((starts + np.r_[starts[1:], line.size] - 1) // 2)
     batch = BATCH.frequencies(system.ports**2)
-    cases = magnitudes.reshape(-1, *magnitudes.shape[-2:])
-    power = np.add.reduceat(cases**2, starts, axis=2)
+    cases = energy.reshape(-1, *energy.shape[-2:])
+    power = np.add.reduceat(cases, starts, axis=2)
     shares: list[Share] = []
     total, first = np.zeros(0), 0
     for some in np.split(omega, range(batch, omega.size, batch)):

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 import scipy.fft
-from numpy.typing import NDArray
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory
+from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory, squared
 from movingfrf._basics.checks import checking
 from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf._basics.smooth import memory, onward, smooth_step, smoothest_step
@@ -45,11 +45,16 @@ class Transform:
     rounding: float = 1e-6  # [1e-9 to 1e-5]
     # Nearer to the next sample than this share of the step, an abrupt change has hardly begun to act there.
     nearest: float = 0.05  # [0.02 to 0.1]
-    # Channels transformed at a time: as many as a processor's vector holds numbers.
-    together: int = 4  # [1 to 64: time only]
+    # Channels transformed at a time: as many as a processor's vector holds numbers, but no more numbers in all.
+    together: int = 8  # [1 to 64: time only]
+    numbers: int = 2**20  # [2**16 to 2**24: time and memory only]
     # Bytes per sample of the padded record and channel (a contact or a degree of freedom) at the peak of a
     # computation, measured on an hour of travel.
     bytes_per_sample: int = 60
+
+    def rows(self, points: int) -> int:
+        """How many channels of so many points are transformed at a time."""
+        return max(min(self.together, self.numbers // points), 1)
 
 
 TRANSFORM = Transform()
@@ -251,65 +256,74 @@ class Line(Remembering):
         ndarray, shape (*case, port, frequency)
             Spectra, in the unit of the record times second.
         """
-        return together(self.parts(given))
+        return together(self._parts(given, (self.decay,))[0])
 
-    def parts(self, given: Given) -> ComplexArray:
-        """Transform part by part, see `Given.begins`, what drives a system: (part, *case, port, frequency)."""
-        return self._parts(given, self.decay)
+    def looked_at(self, given: Given) -> tuple[ComplexArray, FloatArray]:
+        """Transform what drives a system, and tell how much there is of it.
 
-    def magnitudes(self, given: Given) -> FloatArray:
-        """Magnitudes of the spectra without the window: what is early counts no more than what is late."""
-        return np.abs(together(self._parts(given, 0.0)))
+        Parameters
+        ----------
+        given : Given
+            As `spectra` takes it.
 
-    def _parts(self, given: Given, decay: float) -> ComplexArray:
-        """Take abrupt changes out as pulses, transform the rest, and add the spectra of the pulses."""
+        Returns
+        -------
+        parts : ndarray, shape (part, *case, port, frequency)
+            Its spectra part by part, see `Given.begins`.
+        energy : ndarray, shape (*case, port, frequency)
+            Squared magnitudes of the spectrum of it all without the window: what is early counts no more than what
+            is late.
+        """
+        parts, whole = self._parts(given, (self.decay, 0.0))
+        return parts, squared(together(whole))
+
+    def _parts(self, given: Given, decays: tuple[float, ...]) -> ComplexArray:
+        """Take abrupt changes out as pulses, transform the rest, and add the spectra of the pulses.
+
+        Of each decay that the window may have: (decay, part, *case, port, frequency).
+        """
         if not given.abrupt:
-            return self._transformed(given.values, decay)[None]
+            return self._transformed(given.values, decays)[:, None]
         instants, rest, begins = self.instants, given.values.copy(), given.begins
         rate = max(TRANSFORM.pulse * self.solved, TRANSFORM.pulse_ends) / self.period
         pulses = [Pulse.of(change.jumps, rate) for change in given.abrupt]
         for change, pulse in zip(given.abrupt, pulses, strict=True):
             after = int(np.searchsorted(instants, change.time))
             rest[..., change.port, after:] -= pulse.values(instants[after:] - change.time)
-        first = self._transformed(rest, decay)[None]
-        parts = np.concatenate([first, *[np.zeros_like(first)] * (len(begins) - 1)]) if len(begins) > 1 else first
-        s = 1j * self.omega().real + decay
-        for change, pulse in zip(given.abrupt, pulses, strict=True):
-            parts[begins.index(change.time)][..., change.port, :] += np.exp(-change.time * s) * pulse.spectrum(s)
+        first = self._transformed(rest, decays)
+        parts = np.zeros((len(decays), len(begins), *first.shape[1:]), complex)
+        parts[:, 0] = first
+        for number, decay in enumerate(decays):
+            s = 1j * self.omega().real + decay
+            for change, pulse in zip(given.abrupt, pulses, strict=True):
+                spectrum = np.exp(-change.time * s) * pulse.spectrum(s)
+                parts[number, begins.index(change.time), ..., change.port, :] += spectrum
         return parts
 
-    def _transformed(self, values: FloatArray, decay: float) -> ComplexArray:
-        """Let values fade out and transform them; (*case, port, instant) to (…, frequency)."""
-        instants, end, step = self.instants, self.samples * self.time_step, self.period / self.solved
-        fading = int(np.searchsorted(instants, end))
-        fade = 1.0 - smooth_step((instants[fading:] - end) / self._faded_within)
-        window = step * np.exp(-decay * step * np.arange(self.solved))
-        rows = values.reshape(-1, instants.size)
-        spectra, together = np.empty((len(rows), self.size), complex), TRANSFORM.together
+    def _transformed(self, values: FloatArray, decays: tuple[float, ...]) -> ComplexArray:
+        """Let values fade out and transform them; (*case, port, instant) to (decay, …, frequency)."""
+        known, end, step = values.shape[-1], self.samples * self.time_step, self.period / self.solved
+        fading = int(np.ceil(end / step * (1.0 - TRANSFORM.rounding)))
+        fade = step * (1.0 - smooth_step((step * np.arange(fading, known) - end) / self._faded_within))
+        windows = [np.exp(-decay * step * np.arange(known)) if decay else None for decay in decays]
+        rows = values.reshape(-1, known)
+        spectra = np.empty((len(decays), len(rows), self.size), complex)
+        together = max(TRANSFORM.rows(self.solved) // len(decays), 1)
+        padded = np.zeros((len(decays), min(together, len(rows)), self.solved))
         for first in range(0, len(rows), together):
             some = slice(first, first + together)
-            block = rows[some]
-            padded = np.zeros((len(block), self.solved))
-            padded[:, : instants.size] = block
-            padded[:, fading : instants.size] *= fade
-            # A jump at t = 0 is centred there: half of its first sample lies before it.
-            padded[:, 0] *= 0.5
-            padded *= window
-            np.fft.rfft(padded, out=spectra[some])
-        return spectra.reshape(*values.shape[:-1], self.size)
+            block = padded[:, : len(rows[some])]
+            for window, there in zip(windows, block[..., :known], strict=True):
+                np.multiply(rows[some, :fading], step, out=there[:, :fading])
+                np.multiply(rows[some, fading:], fade, out=there[:, fading:])
+                # A jump at t = 0 is centred there: half of its first sample lies before it.
+                there[:, 0] *= 0.5
+                if window is not None:
+                    there *= window
+            spectra[:, some] = scipy.fft.rfft(block)
+        return spectra.reshape(len(decays), *values.shape[:-1], self.size)
 
-    def scratch(self, finer: int = 1) -> NDArray[np.float64]:
-        """Memory for `records` to work in: fresh pages cost more than a transform."""
-        return np.empty((TRANSFORM.together, self.padded * finer))
-
-    def records(
-        self,
-        spectra: ComplexArray,
-        *,
-        derivative: int = 0,
-        finer: int = 1,
-        scratch: NDArray[np.float64] | None = None,
-    ) -> Histories:
+    def records(self, spectra: ComplexArray, *, derivative: int = 0, finer: int = 1) -> Histories:
         """Transform spectra, or their derivatives in time, back to records; the inverse of `spectra`.
 
         Parameters
@@ -320,8 +334,6 @@ class Line(Remembering):
             Order of the derivative with respect to time.
         finer : int
             How many values there shall be for each sample of the record.
-        scratch : ndarray, optional
-            What `scratch()` returned, to be used again for several calls.
 
         Returns
         -------
@@ -329,24 +341,44 @@ class Line(Remembering):
             Records of shape (*case, port, time), and the largest value, as it wraps around, within an eighth of the
             padding near its end.
         """
-        ports = spectra.shape[:-1]
-        rows = spectra.reshape(math.prod(ports), spectra.shape[-1])
+        return self.all_records([(spectra, derivative)], finer)[0]
+
+    def all_records(self, asked: Sequence[tuple[ComplexArray, int]], finer: int = 1) -> list[Histories]:
+        """Transform several spectra, each with the order of a derivative, back to records: as `records` does."""
         samples, padded, step = self.samples * finer, self.padded * finer, self.time_step / finer
-        values, wrapped = np.zeros((len(rows), samples)), np.zeros(len(rows))
-        if not rows.size:
-            return Histories(values.reshape(*ports, samples), wrapped.reshape(ports))
+        shapes = [spectra.shape[:-1] for spectra, _ in asked]
+        found = [Histories(np.zeros((*shape, samples)), np.zeros(shape)) for shape in shapes]
+        rows = [
+            (channel, derivative, values, wrapped)
+            for (spectra, derivative), histories in zip(asked, found, strict=True)
+            if spectra.shape[-1]
+            for channel, values, wrapped in zip(
+                spectra.reshape(-1, spectra.shape[-1]),
+                histories.values.reshape(-1, samples),
+                histories.wrapped.reshape(-1, 1),
+                strict=True,
+            )
+        ]
+        longest = max((channel.size for channel, *_ in rows), default=0)
+        s = 1j * self.omega(slice(longest))
+        factors = {derivative: s**derivative for _, derivative in asked if derivative}
+        growth = np.exp(self.decay * step * np.arange(samples)) / step
         # Not at the very end of the padding, where the ripple lies that precedes a jump at t = 0.
         last = max((padded - samples) // 8, 1)
-        memory = self.scratch(finer) if scratch is None else scratch
-        factor = (1j * self.omega(slice(rows.shape[1]))) ** derivative if derivative else None
-        growth = np.exp(self.decay * step * np.arange(samples)) / step
-        for first in range(0, len(rows), TRANSFORM.together):
-            some = slice(first, first + TRANSFORM.together)
-            block = folded(rows[some] if factor is None else rows[some] * factor, padded)
-            periodic = np.fft.irfft(block, padded, out=memory[: len(block)])
-            np.multiply(periodic[:, :samples], growth, out=values[some])
-            wrapped[some] = np.abs(periodic[:, -3 * last : -2 * last]).max(axis=1) / step
-        return Histories(values.reshape(*ports, samples), wrapped.reshape(ports))
+        together = TRANSFORM.rows(padded)
+        for first in range(0, len(rows), together):
+            block = np.zeros((len(rows[first : first + together]), longest), complex)
+            for (channel, derivative, _, _), there in zip(rows[first : first + together], block, strict=True):
+                if derivative:
+                    np.multiply(channel, factors[derivative][: channel.size], out=there[: channel.size])
+                else:
+                    there[: channel.size] = channel
+            periodic = scipy.fft.irfft(folded(block, padded), padded, overwrite_x=True)
+            ends = np.abs(periodic[:, -3 * last : -2 * last]).max(axis=1) / step
+            for row, one, end in zip(rows[first : first + together], periodic, ends, strict=True):
+                np.multiply(one[:samples], growth, out=row[2])
+                row[3][...] = end
+        return found
 
     def largest(self, spectra: ComplexArray, first: int, *, derivative: int = 0) -> FloatArray:
         """Largest values that spectra reach within the record from some frequency on, their envelope taken.
@@ -372,12 +404,12 @@ class Line(Remembering):
             factor = factor * (1j * self.omega(slice(first, first + above.shape[-1]))) ** derivative
         # Shifted down to zero frequency, twice as many samples as there are frequencies follow it.
         samples = int(scipy.fft.next_fast_len(max(2 * above.shape[-1], 16)))
-        swinging = np.fft.ifft(above * factor, samples)
+        swinging = scipy.fft.ifft(above * factor, samples, overwrite_x=True)
         instants = np.arange(samples) * (self.period / samples)
         # What begins at t = 0 abruptly is still everywhere before the next sample.
         within = slice(*np.searchsorted(instants, [self.time_step, self.duration]).tolist())
-        size = np.abs(swinging[..., within]) * np.exp(self.decay * instants[within])
-        found: FloatArray = size.max(axis=-1, initial=0.0) * (2 * samples / self.period)
+        size = squared(swinging[..., within]) * np.exp(2.0 * self.decay * instants[within])
+        found: FloatArray = np.sqrt(size.max(axis=-1, initial=0.0)) * (2 * samples / self.period)
         return found
 
 

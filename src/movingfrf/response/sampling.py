@@ -91,6 +91,7 @@ class Excited(NamedTuple):
     """What drives a system, in steps that are fine enough, and up to where it is solved."""
 
     line: Line
+    omega: ComplexArray  # (frequency,) those that are solved [rad/s]
     spectra: ComplexArray  # (part, *case, port, frequency), as far as they are solved
     begins: tuple[float, ...]  # from when on each part acts [s]
     truncation: Truncation
@@ -107,11 +108,6 @@ class Excited(NamedTuple):
     def step(self) -> float:
         """Step in which the record is solved: half a period of the highest frequency [s]."""
         return 0.5 * self.line.period / max(self.fade.size - 1, 1)
-
-    @property
-    def omega(self) -> ComplexArray:
-        """Frequencies that are solved [rad/s]."""
-        return self.line.omega(slice(self.fade.size))
 
     def likewise(self, given: Given) -> ComplexArray:
         """Spectra of something else, as far as this is solved."""
@@ -175,8 +171,8 @@ def excited(
     while True:
         line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
         driving = given(line)
-        magnitudes = line.magnitudes(driving)
-        found = influence(system, line, magnitudes, truncation, wanted.alike) if after is None else after.found
+        parts, energy = line.looked_at(driving)
+        found = influence(system, line, energy, truncation, wanted.alike) if after is None else after.found
         highest = found.content(int(SAMPLING.quarter * line.size))
         energies = (*energies, highest**2)
         # Beyond this frequency what an abrupt change adds has passed when the next sample is taken.
@@ -197,9 +193,9 @@ def excited(
     fades = SAMPLING.fades_abrupt if driving.abrupt else SAMPLING.fades
     if stated is None:
         limit = negligible if driving.abrupt else relaxed * wanted.smooth
-        ends = found.negligible_from(found.whole, limit, magnitudes)
+        ends = found.negligible_from(found.whole, limit, energy)
         if passed > ends:
-            ends = min(passed, found.negligible_from(found.whole, at_once, magnitudes))
+            ends = min(passed, found.negligible_from(found.whole, at_once, energy))
         ends = min(ends, int(line.size / (1 + fades)))
         count = min(int(ends * (1 + fades)) + 2, line.size)
     else:
@@ -208,15 +204,16 @@ def excited(
     # What a sharp cut discards would ring on, and the window raises what comes late.
     fade = 1.0 - smoothest_step((np.arange(count) - ends + 1) / max(count - ends, 1))
     if truncation is None:
-        kept = min(found.negligible_from(found.added, TRUNCATION.negligible, magnitudes), count)
+        kept = min(found.negligible_from(found.added, TRUNCATION.negligible, energy), count)
         # Where the response to rest alone is kept, some frequency below the next.
         truncation = max(kept - 1, 0.5 * (kept > 0)) / line.period
     cut = Truncation(frequency=truncation)
     return Excited(
         line=line,
-        spectra=line.parts(driving)[..., :count] * fade,
+        omega=line.omega(slice(count)),
+        spectra=parts[..., :count] * fade,
         begins=driving.begins,
-        truncation=replace(cut, error=found.error(cut.untouched(line.omega()), count)),
+        truncation=replace(cut, error=found.error(cut.harmonics(line.period, line.size), count)),
         fade=fade,
         finest=stated is not None or not enough,
         left_out=0.0 if enough else highest,

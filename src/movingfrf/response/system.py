@@ -81,13 +81,8 @@ class Response(NamedTuple):
 
     def histories(self, line: Line, finer: int = 1) -> CoupledHistories:
         """Transform to time, along the line on which the response was solved; several values for a sample."""
-        scratch = line.scratch(finer)
-        return CoupledHistories(
-            force=line.records(self.force, finer=finer, scratch=scratch),
-            deflection=line.records(self.deflection, finer=finer, scratch=scratch),
-            motion=line.records(self.motion, finer=finer, scratch=scratch),
-            acceleration=line.records(self.motion, derivative=2, finer=finer, scratch=scratch),
-        )
+        asked = [(self.force, 0), (self.deflection, 0), (self.motion, 0), (self.motion, 2)]
+        return CoupledHistories(*line.all_records(asked, finer))
 
 
 class CoupledHistories(NamedTuple):
@@ -121,8 +116,9 @@ class System(Remembering):
     def of(cls, guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
         """Put a vehicle on a guideway; on the one that it was on before, with all that is known of both."""
         made = cls(guideway=guideway, vehicle=vehicle, speed=speed)
-        # What is no value may be another one by now. The one that is remembered keeps its guideway, and so its number.
-        return recalled(vehicle, "system", (id(guideway), speed), lambda: made) if isinstance(guideway, Value) else made
+        # What is no value may be another one by now. What is remembered keeps its guideway, and so the id.
+        same = (id(guideway), speed)
+        return recalled(vehicle, "system", same, lambda: made) if isinstance(guideway, Value) else made
 
     @property
     def dynamics(self) -> Dynamics:

@@ -71,6 +71,12 @@ class Truncation:
         """Count the frequencies [rad/s] up to the truncation; ascending, unless all count."""
         return self._below(omega, 1.0)
 
+    def harmonics(self, period: float, size: int) -> int:
+        """Count those of so many harmonics of a period [s] that lie up to the truncation, from zero on."""
+        if self.frequency in (0.0, np.inf):
+            return size if self.frequency else 0
+        return min(int(self.frequency * (1.0 + TRUNCATION.rounding) * period) + 1, size)
+
     def reach(self, omega: ComplexArray) -> int:
         """Count the frequencies [rad/s] at which the guideway gives way at all, as for `untouched`."""
         return self._below(omega, 1.0 + TRUNCATION.stiffening)

@@ -118,11 +118,17 @@ class Along(NamedTuple):
         """Where the profile ends [m]."""
         return float(self.spline.x[-1])
 
-    def level(self, distance: FloatArray, order: int = 0) -> FloatArray:
-        """Elevation about datum and grade within the profile, or a derivative of it."""
-        found = self.spline(distance, order)
+    def level(self, distance: FloatArray | float, order: int = 0) -> FloatArray:
+        """Elevation about datum and grade [m], or a derivative of it, within the profile or beyond."""
+        places = np.asarray(distance)
+        first, last = float(places.min()), float(places.max())
+        if first < self.spline.x[0] or last > self.ends:
+            return self.between(first, last)(places, order)
+        found = self.spline(places, order)
         if order == 0:
-            found -= self.datum + self.grade * (distance - self.datum_at)
+            found -= self.datum
+            if self.grade:
+                found -= self.grade * (places - self.datum_at)
         elif order == 1:
             found -= self.grade
         return found
@@ -147,7 +153,7 @@ class Along(NamedTuple):
     def seen(self, distance: FloatArray, footprint: float, cams: float, derivative: int = 0) -> FloatArray:
         """Average elevation about the datum [m], or its slope [m/m], at ascending distances [m]."""
         if not footprint and not cams:
-            return self.between(*distance[[0, -1]].tolist())(distance, derivative) if distance.size else distance
+            return self.level(distance, derivative) if distance.size else distance
         found = np.empty_like(distance)
         for first in range(0, distance.size, SEEING.together):
             some = slice(first, first + SEEING.together)

@@ -17,12 +17,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg
 
 from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from movingfrf._basics.compiling import compiled
 from movingfrf._basics.remembered import Remembering, remembered
 
 
@@ -33,6 +35,9 @@ class Solution:
     # Above this condition number of the modal matrix (a defective or nearly defective mode) the modes no longer
     # carry the digits and each frequency is solved directly.
     worst_condition: float = 1e6  # [1e3 to 1e8]
+    # Compiled loops gain on BLAS up to so many modes; they take so many frequencies at a time.
+    few: int = 12  # [8 to 20: time only]
+    together: int = 64  # [16 to 256: time only]
     # Rigid contacts whose prescribed motions are closer to each other than this prescribe the same one twice.
     independent: float = 1e-9  # [1e-12 to 1e-6]
 
@@ -133,6 +138,17 @@ def split(contact_map: FloatArray, rigid: BoolArray) -> Split | None:
     return Split(free, prescribed, kept)
 
 
+class Stacked(NamedTuple):
+    """What compiled loops take of a part: all powers of iω up to the highest in one array."""
+
+    entered: ComplexArray  # (power, mode, contact)
+    carried: ComplexArray  # (power, contact², mode)
+    moving: ComplexArray  # (dof, mode), what of a mode moves
+    pushing: ComplexArray  # (power, contact, mode), what of it presses
+    prescribed: FloatArray  # S (dof, contact), without columns if it is zero
+    direct: FloatArray  # E (power, contact, contact)
+
+
 class Modes(NamedTuple):
     """Poles and residues of P⁻¹: the vehicle on its contact springs, the guideway held still.
 
@@ -175,7 +191,7 @@ class Modes(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Part:
+class Part(Remembering):
     """A part of a vehicle that moves on its own, all of it or one vehicle of a convoy; made by `parts`.
 
     Parameters
@@ -204,6 +220,15 @@ class Part:
 
     def response(self, omega: ComplexArray, displacement: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Motion (*case, dof, frequency) and contact force for a displacement, both (*case, contact, frequency)."""
+        if self.modes is not None and (loops := self._compiled(omega)):
+            entered, _, moving, pushing, prescribed, direct = self._stacked
+            omega, cases = (np.require(part, complex, ("C", "W")) for part in (omega, displacement))
+            cases = cases.reshape(-1, *displacement.shape[-2:])
+            found = loops.response(
+                omega, cases, self.modes.poles, entered, moving, prescribed, pushing, direct, SOLUTION.together
+            )
+            motion, force = (part.reshape(*displacement.shape[:-2], *part.shape[1:]) for part in found)
+            return motion, force
         free = self._free(omega, displacement)
         if not self.motion.prescribed.any():
             moved = free
@@ -213,6 +238,29 @@ class Part:
         force = self.entry.transposed().times(omega, free)
         force -= self.direct.times(omega, displacement)
         return moved, force
+
+    def _compiled(self, omega: ComplexArray) -> ModuleType | None:
+        """Give compiled loops where they gain on BLAS: of few modes."""
+        modes = self.modes.poles.size if self.modes else 0
+        return compiled("vehicles.compiled", modes * omega.size) if modes <= SOLUTION.few else None
+
+    @property
+    @remembered
+    def _stacked(self) -> Stacked:
+        modes = self.modes
+        assert modes is not None
+        contacts, pushing = len(self.contacts), [part.T @ modes.shapes for part in self.entry]
+        powers = 1 + max(power for power, _ in (*self.entry.terms(), *self.direct.terms()))
+        carried = range(max(powers, *(power + 1 for power, part in enumerate(modes.carried) if part is not None)))
+        nothing = np.zeros((modes.poles.size, contacts)), np.zeros((contacts**2, modes.poles.size))
+        return Stacked(
+            np.array([nothing[0] if part is None else part for part in modes.entered[:powers]], complex),
+            np.array([nothing[1] if modes.carried[n] is None else modes.carried[n] for n in carried], complex),
+            np.ascontiguousarray(self.motion.free @ modes.shapes),
+            np.array(pushing[:powers], complex),
+            self.motion.prescribed if self.motion.prescribed.any() else self.motion.prescribed[:, :0],
+            np.array([self.direct[power] if power < 3 else 0.0 * self.direct[0] for power in carried]),
+        )
 
     def _free(self, omega: ComplexArray, displacement: ComplexArray) -> ComplexArray:
         """Free coordinates p = P⁻¹ H d, shape (*case, free, frequency)."""
@@ -232,6 +280,11 @@ class Part:
 
     def stiffness(self, omega: ComplexArray) -> ComplexArray:
         """Dynamic stiffness D = E − Hᵀ P⁻¹ H at its contacts, shape (contact, contact, frequency)."""
+        if self.modes is not None and (loops := self._compiled(omega)):
+            _, carried, _, _, _, kept = self._stacked
+            count, omega = len(self.contacts), np.require(omega, complex, ("C", "W"))
+            found = loops.stiffness(omega, self.modes.poles, carried, kept, SOLUTION.together)
+            return found.reshape(count, count, omega.size)
         direct = self.direct.at(omega)
         if not len(self.own.constant):
             return direct

@@ -1,0 +1,136 @@
+"""Compiled loops and NumPy give the same numbers; and who takes which."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import movingfrf as mf
+from movingfrf._basics.compiling import PATIENCE, compiled, compiling, numba_is_there
+from movingfrf._basics.spline import cubic
+from tests.analytic.vehicle_parts import RIGID
+from tests.helpers import DAMPED, UNDAMPED, VEHICLES
+
+pytestmark = pytest.mark.skipif(not numba_is_there(), reason="needs numba")
+
+ROADS = DAMPED | {f"undamped_{name}": road for name, road in UNDAMPED.items()}
+GRID = {
+    "even": 2 * np.pi * np.linspace(0.0, 150.0, 700) - 0.3j,
+    "even over decades": np.geomspace(1e-3, 1e5, 300) * (1 - 1e-6j),
+    "few": np.array([300.0 - 1.0j, 20.0 - 1.0j, 20.0 - 1.0j, 2000.0 - 5.0j]),
+    "one": np.array([0.0 - 0.1j]),
+}
+AHEAD = np.array([-60.0, -4.0, -0.3, 0.0, 0.3, 4.0, 60.0])
+
+
+def both(compute):
+    """Compute something compiled, and in NumPy."""
+    found = []
+    for choice in (True, False):
+        with compiling(choice):
+            found.append(compute())
+    return found
+
+
+def off(one, other):
+    """Largest difference, relative to the largest value."""
+    return float(np.abs(one - other).max() / np.abs(other).max())
+
+
+@pytest.mark.parametrize("grid", GRID)
+@pytest.mark.parametrize("share", [0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1, 0.6, 0.97, 1.03, 1.6, 5.0])
+@pytest.mark.parametrize("name", [name for name in ROADS if hasattr(ROADS[name], "waves")])
+def test_moving_frfs(name, share, grid):
+    """At rest, nearly so, below and above the critical speed; also undamped, somewhat below the real axis."""
+    road = ROADS[name]
+    speed = share * min(road.critical_speed, 300.0)
+    for derivative in (0, 2):
+        one, other = both(lambda: road.moving_frf(AHEAD, speed, GRID[grid], derivative=derivative))
+        for column in range(AHEAD.size):
+            assert off(one[:, column], other[:, column]) < 1e-10 or np.abs(other[:, column]).max() < 1e-12 * (
+                np.abs(other).max()
+            )
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_waves_are_all_there(name):
+    """As many on either side, and the same ones: in whatever order."""
+    road = ROADS[name]
+    if not hasattr(road, "waves"):
+        pytest.skip("has no waves")
+    for share in (1e-6, 0.5, 0.95, 1.1, 3.0):
+        one, other = both(lambda: road.waves(share * min(road.critical_speed, 300.0), GRID["even"]))
+        assert (one.forward.sum(axis=0) == other.forward.sum(axis=0)).all()
+        for number in range(0, GRID["even"].size, 23):
+            apart = np.abs(one.kappa[:, number, None] - other.kappa[None, :, number])
+            assert (apart.min(axis=0) < 1e-9 * np.abs(other.kappa[:, number])).all()
+            assert (np.sort(apart.argmin(axis=0)) == np.arange(len(apart))).all()
+
+
+@pytest.mark.parametrize("name", [*VEHICLES, *RIGID])
+def test_vehicles(name):
+    dynamics = (VEHICLES | RIGID)[name].dynamics()
+    omega = GRID["even"]
+    contacts = dynamics.contacts
+    below = np.random.default_rng(0).normal(size=(3, contacts, omega.size, 2)).view(complex)[..., 0]
+    one, other = both(lambda: dynamics.stiffness(omega))
+    assert off(one, other) < 1e-12
+    for part, same in zip(*both(lambda: dynamics.response(omega, below)), strict=True):
+        assert off(part, same) < 1e-12
+
+
+def test_splines():
+    """Even or uneven knots, in any order, at knots, before the first and past the last."""
+    random = np.random.default_rng(1)
+    for knots in (np.linspace(0.0, 9.0, 40), np.sort(random.uniform(0.0, 9.0, 40)), np.array([0.0, 1.0, 9.0])):
+        spline = cubic(knots, random.normal(size=knots.size))
+        places = [knots, np.linspace(-1.0, 10.0, 500), random.uniform(-1.0, 10.0, 500), np.array(3.3), np.zeros(0)]
+        for at in places:
+            for order in range(5):
+                one, other = both(lambda: spline(at, order))
+                assert one.shape == other.shape
+                np.testing.assert_allclose(one, other, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("vehicle", ["half_truck", "quarter_truck"])
+@pytest.mark.parametrize("road", ["euler_bernoulli_winkler", "rail_pad_sleeper_ballast"])
+def test_a_whole_drive(road, vehicle):
+    profile = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 4.0)), length=60.0, start=-6.0)
+    one, other = both(lambda: mf.simulate(DAMPED[road], VEHICLES[vehicle], profile, speed=15.0, duration=2.0))
+    for name in ("contact_force", "deflection", "motion", "acceleration"):
+        assert off(one[name].values, other[name].values) < 1e-9
+    assert one.attrs["truncation"] == pytest.approx(other.attrs["truncation"], rel=1e-6)
+
+
+def test_an_infinite_response_is_refused_by_both():
+    road = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9), mf.Spring(stiffness=8.0e6))
+    cut_off = np.sqrt(8.0e6 / 711.9)
+    for choice in (True, False):
+        with compiling(choice), pytest.raises(mf.SolveError, match="infinite at 16.87"):
+            road.moving_frf([0.0], 0.0, [1.0, cut_off])
+
+
+LOADED = """
+import sys
+sys.argv = ["movingfrf"]
+from movingfrf._basics.compiling import compiled
+assert compiled("guideways.compiled", {work}) is None
+assert "numba" not in sys.modules
+assert (compiled("guideways.compiled", 1) is not None) == {then}
+"""
+
+
+@pytest.mark.parametrize("then", [False, True])
+def test_a_command_loads_numba_where_it_pays(then):
+    """Which is told by what it has done: the same command takes the same way."""
+    code = LOADED.format(work=PATIENCE.work if then else 1000, then=then)
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_what_cannot_be_loaded_is_done_without(monkeypatch):
+    monkeypatch.setitem(sys.modules, "movingfrf.nothing.compiled", None)
+    with compiling(True):
+        assert compiled("nothing.compiled", 1) is None
