@@ -48,11 +48,11 @@ def test_moving_frfs(name, share, grid):
     road = ROADS[name]
     speed = share * min(road.critical_speed, 300.0)
     for derivative in (0, 2):
-        one, other = both(lambda: road.moving_frf(AHEAD, speed, GRID[grid], derivative=derivative))
+        one, other = both(lambda n=derivative: road.moving_frf(AHEAD, speed, GRID[grid], derivative=n))
         for column in range(AHEAD.size):
-            assert off(one[:, column], other[:, column]) < 1e-10 or np.abs(other[:, column]).max() < 1e-12 * (
-                np.abs(other).max()
-            )
+            size = np.abs(other[:, column]).max()
+            # Undamped waves that nearly meet, 60 m and hundreds of radians away, lose the most.
+            assert off(one[:, column], other[:, column]) < 2e-9 or size < 1e-12 * np.abs(other).max()
 
 
 @pytest.mark.parametrize("name", ROADS)
@@ -61,8 +61,8 @@ def test_waves_are_all_there(name):
     road = ROADS[name]
     if not hasattr(road, "waves"):
         pytest.skip("has no waves")
-    for share in (1e-6, 0.5, 0.95, 1.1, 3.0):
-        one, other = both(lambda: road.waves(share * min(road.critical_speed, 300.0), GRID["even"]))
+    for speed in min(road.critical_speed, 300.0) * np.array([1e-6, 0.5, 0.95, 1.1, 3.0]):
+        one, other = both(lambda speed=speed: road.waves(speed, GRID["even"]))
         assert (one.forward.sum(axis=0) == other.forward.sum(axis=0)).all()
         for number in range(0, GRID["even"].size, 23):
             apart = np.abs(one.kappa[:, number, None] - other.kappa[None, :, number])
@@ -90,7 +90,7 @@ def test_splines():
         places = [knots, np.linspace(-1.0, 10.0, 500), random.uniform(-1.0, 10.0, 500), np.array(3.3), np.zeros(0)]
         for at in places:
             for order in range(5):
-                one, other = both(lambda: spline(at, order))
+                one, other = both(lambda one=spline, at=at, order=order: one(at, order))
                 assert one.shape == other.shape
                 np.testing.assert_allclose(one, other, rtol=0, atol=1e-9)
 
@@ -109,7 +109,7 @@ def test_an_infinite_response_is_refused_by_both():
     road = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9), mf.Spring(stiffness=8.0e6))
     cut_off = np.sqrt(8.0e6 / 711.9)
     for choice in (True, False):
-        with compiling(choice), pytest.raises(mf.SolveError, match="infinite at 16.87"):
+        with compiling(choice), pytest.raises(mf.SolveError, match=r"infinite at 16\.87"):
             road.moving_frf([0.0], 0.0, [1.0, cut_off])
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.smooth import smoothest_step
 from movingfrf.response.line import TRANSFORM, Given, Line
 from movingfrf.response.sampling import SAMPLING, Excited
 from movingfrf.response.solve import solve
@@ -61,12 +63,13 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
         Relative to the largest value of a channel.
     """
     line, beyond, begins = driven_by.line, driven_by.beyond, driven_by.omega.size // 2
-    of_force = beyond[: response.force.shape[-2]] * line.largest(response.force, begins)
-    of_acceleration = beyond[-response.motion.shape[-2] :] * line.largest(response.motion, begins, derivative=2)
-    peaks = max(
-        float(relative(part, largest(whole.values)).max(initial=0.0))
-        for part, whole in ((of_force, histories.force), (of_acceleration, histories.acceleration))
-    )
+    peaks = 0.0
+    for spectra, order, records, share in (
+        (response.force, 0, histories.force.values, beyond[: response.force.shape[-2]]),
+        (response.motion, 2, histories.acceleration.values, beyond[-response.motion.shape[-2] :]),
+    ):
+        octave = _each(spectra[..., begins:], partial(_largest_swing, line, begins, order))
+        peaks = max(peaks, float(relative(share * np.sqrt(octave), largest(records)).max(initial=0.0)))
     # No more than all can be missing; and no less than what is known to be left out, relative L2.
     return min(max(peaks, driven_by.missing), 1.0)
 
@@ -97,16 +100,37 @@ def hidden(
     first = line.padded // 2 + 1
     if spectra.shape[-1] <= first:
         return np.zeros(spectra.shape[-2])
-    # A sharp cut would ring on, and the window raises what comes late.
-    above = smoothest_step((np.arange(spectra.shape[-1]) / first - 1.0) / TRANSFORM.fading_in)
-    part = line.records(spectra * above, derivative=derivative).values
-    # What happens right after the end shows before it, for as long as this cut rings.
-    part = part[..., : -round(2 / TRANSFORM.fading_in)] if line.samples > 4 / TRANSFORM.fading_in else part
-    # Sampled at whatever phase, what is above has the size that it has.
-    part, whole = rms(part), rms(records)
+    # What happens right after the end shows before it, for as long as the cut rings.
+    rings = 2.0 / TRANSFORM.fading_in / line.samples
+    kept = 1.0 - rings if rings < 0.5 else 1.0
+
+    def size(some: ComplexArray) -> FloatArray:
+        swings = line.swings(some, first, derivative=derivative)
+        return np.sqrt(0.5 * swings[..., : max(int(kept * swings.shape[-1]), 1)].mean(axis=-1))
+
+    part, whole = _each(spectra[..., first:], size), rms(records)
     whole = np.maximum(whole, (SAMPLING.smallest if least is None else least) * whole.max(initial=0.0))
     share: FloatArray = np.divide(part, whole, out=np.zeros_like(part), where=whole > 0)
     return share.max(axis=0)
+
+
+def _largest_swing(line: Line, first: int, order: int, some: ComplexArray) -> FloatArray:
+    """Largest squared envelope, (case, port, frequency from the first one on) to (case, port)."""
+    found: FloatArray = line.swings(some, first, derivative=order).max(axis=-1, initial=0.0)
+    return found
+
+
+def _mean_swing(line: Line, first: int, order: int, some: ComplexArray) -> FloatArray:
+    """Mean squared envelope of what does not begin sharply, as for `_largest_swing`."""
+    found: FloatArray = line.swings(some, first, derivative=order, fading_in=False).mean(axis=-1)
+    return found
+
+
+def _each(spectra: ComplexArray, measured: Callable[[ComplexArray], FloatArray]) -> FloatArray:
+    """Measure channels, (case, port, frequency) to (case, port), a few at a time: memory for all costs more."""
+    ports, together = spectra.shape[-2], TRANSFORM.rows(2 * spectra.shape[-1])
+    some = [measured(spectra[..., n : n + together, :]) for n in range(0, ports, together)]
+    return np.concatenate(some, axis=-1) if some else np.zeros(spectra.shape[:-1])
 
 
 def past_the_end(
@@ -165,11 +189,20 @@ def truncated(system: System, driven_by: Excited, response: Response, histories:
     untruncated = solve(system, omega[first:], driven_by.spectra[..., first:], truncation=EVERYWHERE)
     change = []
     for with_it, without in zip(response, untruncated, strict=True):
-        difference = np.zeros((*without.shape[:-1], omega.size), complex)
-        difference[..., first:] = without
-        difference[..., first : with_it.shape[-1]] -= with_it[..., first:]
-        change.append(difference)
-    error = 0.0
-    for off, cut_off in zip(Response(*change).histories(driven_by.line), histories, strict=True):
-        error = max(error, float(relative(rms(off.values), rms(cut_off.values + off.values)).max(initial=0.0)))
+        known = with_it[..., first:]
+        without[..., : known.shape[-1]] -= known
+        change.append(without)
+    line, error = driven_by.line, 0.0
+    for spectra, order, records in zip(
+        (*change, change[-1]), (0, 0, 0, 2), (part.values for part in histories), strict=True
+    ):
+        swings = _each(spectra, partial(_mean_swing, line, first, order))
+        share = float(relative(np.sqrt(0.5 * swings), rms(records)).max(initial=0.0))
+        if share > SAMPLING.slight:
+            # The record without a truncation is another one.
+            whole = np.zeros((*spectra.shape[:-1], omega.size), complex)
+            whole[..., first:] = spectra
+            off = line.records(whole, derivative=order).values
+            share = float(relative(rms(off), rms(records + off)).max(initial=0.0))
+        error = max(error, share)
     return Truncation(frequency=cut.frequency, error=error)

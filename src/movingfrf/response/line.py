@@ -380,37 +380,43 @@ class Line(Remembering):
                 row[3][...] = end
         return found
 
-    def largest(self, spectra: ComplexArray, first: int, *, derivative: int = 0) -> FloatArray:
-        """Largest values that spectra reach within the record from some frequency on, their envelope taken.
+    def swings(
+        self, spectra: ComplexArray, first: int, *, derivative: int = 0, fading_in: bool = True
+    ) -> FloatArray:
+        """Squared envelope within the record of what spectra hold from some frequency on.
 
         Parameters
         ----------
         spectra : ndarray, shape (*case, port, frequency)
-            As `records` takes them.
+            As `records` takes them, but for the frequencies below the first one.
         first : int
-            Number of the frequency from which on they count, fading in over a share of it.
+            Number of the first one.
         derivative : int
             Order of the derivative with respect to time.
+        fading_in : bool
+            Whether they fade in over a share of it: what a sharp cut discards would ring on, and the window raises
+            what comes late.
 
         Returns
         -------
-        ndarray, shape (*case, port)
-            In the unit of the record.
+        ndarray, shape (*case, port, instant)
+            In the unit of the record squared, from the sample after zero on: what begins abruptly at t = 0 is still
+            everywhere before that.
         """
-        # A sharp cut would ring on, and the window raises what comes late.
-        above = spectra[..., first:]
-        factor = smoothest_step(np.arange(above.shape[-1]) / max(TRANSFORM.fading_in * first, 1.0))
+        above = spectra
+        if fading_in:
+            width = max(TRANSFORM.fading_in * first, 1.0)
+            above = above * smoothest_step(np.arange(above.shape[-1]) / width)
         if derivative:
-            factor = factor * (1j * self.omega(slice(first, first + above.shape[-1]))) ** derivative
+            above = above * (1j * self.omega(slice(first, first + above.shape[-1]))) ** derivative
         # Shifted down to zero frequency, twice as many samples as there are frequencies follow it.
         samples = int(scipy.fft.next_fast_len(max(2 * above.shape[-1], 16)))
-        swinging = scipy.fft.ifft(above * factor, samples, overwrite_x=True)
+        swinging = scipy.fft.ifft(above, samples)
         instants = np.arange(samples) * (self.period / samples)
-        # What begins at t = 0 abruptly is still everywhere before the next sample.
         within = slice(*np.searchsorted(instants, [self.time_step, self.duration]).tolist())
-        size = squared(swinging[..., within]) * np.exp(2.0 * self.decay * instants[within])
-        found: FloatArray = np.sqrt(size.max(axis=-1, initial=0.0)) * (2 * samples / self.period)
-        return found
+        size: FloatArray = squared(swinging[..., within])
+        size *= np.exp(2.0 * self.decay * instants[within]) * (2 * samples / self.period) ** 2
+        return size
 
 
 def together(parts: Values) -> Values:

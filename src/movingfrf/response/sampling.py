@@ -77,6 +77,7 @@ class Sampling:
     # no matter. From the other one on, what a stated truncation changes is computed rather than estimated.
     smallest: float = 1e-3  # [a convention]
     estimated: float = 1e-4  # [1e-5 to 5e-4]
+    slight: float = 1e-2  # up to here it is measured from what it leaves out alone [1e-3 to 2e-2]
     affordable: int = 2**15  # frequencies; of more of them it stays an upper estimate [time only]
     # A sampled force jumps where its third differences are those of a jump, up to this share of it, and no others
     # are within so many steps.
