@@ -10,8 +10,10 @@ from threading import Barrier
 
 import pytest
 
+import movingfrf as mf
 import movingfrf.guideways.track as tracks
 from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf.guideways.guideway import at_offsets
 from tests.helpers import DAMPED
 
 ASKED: list[str] = []
@@ -108,3 +110,42 @@ def test_what_fails_is_not_remembered():
         fickle.answer()
     assert fickle.answer() == fickle.answer() == 42
     assert len(fickle.tries) == 2
+
+
+def test_a_vehicle_knows_the_road_that_it_was_on_and_no_other():
+    """What is known of both is what would be computed: other roads, speeds and steps in between change nothing."""
+    soft, firm = (
+        mf.track(mf.EulerBernoulliBeam(1.573e7, 711.9), mf.Spring(stiffness, 3.0e4)) for stiffness in (2.0e6, 8.0e6)
+    )
+    surface = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 2.0)), length=60.0, start=-10.0)
+
+    def car():
+        return mf.quarter_car(
+            body_mass=400.0, wheel_mass=40.0, suspension_stiffness=2e4, suspension_damping=1.5e3, tyre_stiffness=2e5
+        )
+
+    asked = [(soft, 10.0, 1.0), (soft, 10.0, 2.0), (firm, 10.0, 1.0), (firm, 12.0, 1.0), (soft, 10.0, 1.0)]
+    one = car()
+    for road, speed, duration in asked:
+        found, wanted = (
+            mf.simulate(road, vehicle, surface, speed=speed, duration=duration) for vehicle in (one, car())
+        )
+        assert found.identical(wanted)
+
+
+def test_a_road_that_may_change_is_asked_anew():
+    class Springs:
+        critical_speed, stiffness = float("inf"), 8.0e6
+
+        def moving_frf(self, ahead, speed, omega, *, across=0.0, source_across=0.0, derivative=0):
+            def springs(asked):
+                return (asked.ahead == 0) / (self.stiffness + 3.0e4j * asked.omega)
+
+            return at_offsets(springs, ahead, speed, omega)
+
+    road, wheel = Springs(), mf.sprung_mass(mass=400.0, stiffness=2e5, damping=1e3)
+    flat = mf.Profile([-10.0, 0.0, 10.0, 40.0], [0.0] * 4)
+    sags = []
+    for road.stiffness in (8.0e6, 4.0e6):
+        sags.append(float(mf.simulate(road, wheel, flat, speed=10.0, duration=0.5).static_deflection[0]))
+    assert sags[1] == pytest.approx(2 * sags[0], rel=1e-12)

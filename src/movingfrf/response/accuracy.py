@@ -68,8 +68,8 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
         (response.force, 0, histories.force.values, beyond[: response.force.shape[-2]]),
         (response.motion, 2, histories.acceleration.values, beyond[-response.motion.shape[-2] :]),
     ):
-        octave = _each(spectra[..., begins:], partial(_largest_swing, line, begins, order))
-        peaks = max(peaks, float(relative(share * np.sqrt(octave), largest(records)).max(initial=0.0)))
+        octave = _each(spectra, partial(_largest_from, line, begins, order))
+        peaks = max(peaks, float(relative(share * octave, largest(records)).max(initial=0.0)))
     # No more than all can be missing; and no less than what is known to be left out, relative L2.
     return min(max(peaks, driven_by.missing), 1.0)
 
@@ -109,19 +109,20 @@ def hidden(
         return np.sqrt(0.5 * swings[..., : max(int(kept * swings.shape[-1]), 1)].mean(axis=-1))
 
     part, whole = _each(spectra[..., first:], size), rms(records)
+    # Few samples may all miss it.
+    whole = np.maximum(whole, part)
     whole = np.maximum(whole, (SAMPLING.smallest if least is None else least) * whole.max(initial=0.0))
     share: FloatArray = np.divide(part, whole, out=np.zeros_like(part), where=whole > 0)
     return share.max(axis=0)
 
 
-def _largest_swing(line: Line, first: int, order: int, some: ComplexArray) -> FloatArray:
-    """Largest squared envelope, (case, port, frequency from the first one on) to (case, port)."""
-    found: FloatArray = line.swings(some, first, derivative=order).max(axis=-1, initial=0.0)
-    return found
+def _largest_from(line: Line, first: int, order: int, some: ComplexArray) -> FloatArray:
+    """Largest values in a record of what lies from a frequency on, (case, port, frequency) to (case, port)."""
+    return largest(line.records(some * line.from_on(first, some.shape[-1]), derivative=order).values)
 
 
 def _mean_swing(line: Line, first: int, order: int, some: ComplexArray) -> FloatArray:
-    """Mean squared envelope of what does not begin sharply, as for `_largest_swing`."""
+    """Mean squared envelope of what begins at a frequency, not sharply, (case, port, frequency) to (case, port)."""
     found: FloatArray = line.swings(some, first, derivative=order, fading_in=False).mean(axis=-1)
     return found
 

@@ -26,10 +26,12 @@ class Transform:
     # What wraps around the end of the padded record comes back weaker by this factor at least; what happens at the
     # beginning and spreads in time, as rounding does, grows by the other one by the end of the record.
     wrap_around: float = 3e-6  # [1e-8 to 1e-5]
-    growth: float = 1e4  # [1e2 to 3e4]
+    growth: float = 3e3  # [1e2 to 5e3]
     # What a cut in frequency discards spreads over the inverse of the width of that cut: within so much of it, in
     # radians, nothing may grow by more than e.
     within: float = 0.45  # [0.1 to 0.5]
+    # So many rounding errors of its root mean square a spectrum is uncertain.
+    noise: float = 10.0  # [3 to 30]
     # Share of a frequency over which what lies above it fades in.
     fading_in: float = 0.1  # [0.05 to 0.2]
     least: int = 16  # steps of padding [8 to 64]
@@ -275,7 +277,10 @@ class Line(Remembering):
             is late.
         """
         parts, whole = self._parts(given, (self.decay, 0.0))
-        return parts, squared(together(whole))
+        energy = squared(together(whole))
+        # Rounding spreads over all frequencies; what lies below it is not known to be there.
+        energy[energy < (TRANSFORM.noise * np.finfo(float).eps) ** 2 * energy.mean(axis=-1, keepdims=True)] = 0.0
+        return parts, energy
 
     def _parts(self, given: Given, decays: tuple[float, ...]) -> ComplexArray:
         """Take abrupt changes out as pulses, transform the rest, and add the spectra of the pulses.
@@ -380,6 +385,13 @@ class Line(Remembering):
                 row[3][...] = end
         return found
 
+    def from_on(self, first: int, size: int) -> FloatArray:
+        """Share that counts of each of so many frequencies where those from one on do, shape (frequency,).
+
+        What a sharp cut discards would ring on, and the window raises what comes late.
+        """
+        return smoothest_step((np.arange(size) - first) / max(TRANSFORM.fading_in * first, 1.0))
+
     def swings(
         self, spectra: ComplexArray, first: int, *, derivative: int = 0, fading_in: bool = True
     ) -> FloatArray:
@@ -394,26 +406,24 @@ class Line(Remembering):
         derivative : int
             Order of the derivative with respect to time.
         fading_in : bool
-            Whether they fade in over a share of it: what a sharp cut discards would ring on, and the window raises
-            what comes late.
+            Whether they fade in, as in `from_on`, or begin by themselves.
 
         Returns
         -------
         ndarray, shape (*case, port, instant)
-            In the unit of the record squared, from the sample after zero on: what begins abruptly at t = 0 is still
+            In the unit of the record squared, from the sample after zero on: what begins abruptly at t = 0 is
             everywhere before that.
         """
-        above = spectra
-        if fading_in:
-            width = max(TRANSFORM.fading_in * first, 1.0)
-            above = above * smoothest_step(np.arange(above.shape[-1]) / width)
+        last = first + spectra.shape[-1]
+        above = spectra * self.from_on(first, last)[first:] if fading_in else spectra
         if derivative:
-            above = above * (1j * self.omega(slice(first, first + above.shape[-1]))) ** derivative
+            above = above * (1j * self.omega(slice(first, last))) ** derivative
         # Shifted down to zero frequency, twice as many samples as there are frequencies follow it.
         samples = int(scipy.fft.next_fast_len(max(2 * above.shape[-1], 16)))
         swinging = scipy.fft.ifft(above, samples)
         instants = np.arange(samples) * (self.period / samples)
-        within = slice(*np.searchsorted(instants, [self.time_step, self.duration]).tolist())
+        begin, end = np.searchsorted(instants, [self.time_step, self.duration]).tolist()
+        within = slice(begin, max(end, begin + 1))
         size: FloatArray = squared(swinging[..., within])
         size *= np.exp(2.0 * self.decay * instants[within]) * (2 * samples / self.period) ** 2
         return size

@@ -176,6 +176,7 @@ def driven(
     surveyed = survey(system)
     driven_by, response, histories, left_out = _solved(system, excitation, journey, progress)
     cut = truncated(system, driven_by, response, histories)
+    elevation = excitation.elevation(journey.travelled)
     steady, wheels = surveyed.steady, range(len(vehicle.contacts))
     above = (
         hidden(driven_by.line, response.force, histories.force.values),
@@ -201,14 +202,14 @@ def driven(
         *find.not_decayed("vehicle's motion", histories.motion.wrapped, histories.motion.values),
         *find.beyond_truncation(cut.frequency, cut.error),
         *find.unresolved(left_out, driven_by.step, stated=journey.solved_step is not None),
-        *find.jumps_at_the_start(_jump(excitation, vehicle)),
+        *find.jumps_at_the_start(_jump(elevation, vehicle)),
         *not_shown,
         *find.profile_ends(_guessed(system, excitation, journey, driven_by, histories), excitation.guessed),
         *find.graded(*excitation.slopes),
     ]
     values = {
         **journey.coordinates(vehicle),
-        **_records(histories, steady, excitation.elevation(journey.travelled)),
+        **_records(histories, steady, elevation),
         "static_load": steady.load,
         "static_deflection": steady.deflection,
     }
@@ -291,10 +292,10 @@ def _solved(
     return driven_by, response, histories, left_out
 
 
-def _jump(excitation: Excitation, vehicle: Vehicle) -> float:
+def _jump(seen: FloatArray, vehicle: Vehicle) -> float:
     """Largest step at t = 0 that a contact with a dashpot, or a rigid one, meets [m]."""
     hard = (vehicle.dashpots > 0) | np.isinf(vehicle.springs)
-    return float(np.abs(excitation.elevation(np.zeros(1))[:, 0] * hard).max())
+    return float(np.abs(seen[:, 0] * hard).max())
 
 
 def _fading(excitation: Excitation, journey: Journey) -> float:

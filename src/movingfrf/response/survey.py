@@ -51,7 +51,6 @@ class Survey:
     findings: tuple[find.Finding, ...]
 
 
-@unthreaded
 def survey(system: System) -> Survey:
     """Look at a system before it is solved.
 
@@ -73,6 +72,7 @@ def survey(system: System) -> Survey:
     return recalled(system, "survey", None, lambda: _surveyed(system))
 
 
+@unthreaded
 def _surveyed(system: System) -> Survey:
     critical_speed = float(system.guideway.critical_speed)
     findings = [*find.near_critical(system.speed, critical_speed), *findings_of(system.guideway)]
