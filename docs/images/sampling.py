@@ -48,7 +48,12 @@ def record() -> None:
     )
     above.plot(time, 1e3 * faded / window, color="tab:blue", linestyle="--", label="faded out within the padding")
     above.set_ylabel("elevation [mm]")
-    below.semilogy(time, window, color="tab:green", label=f"exponential window, to 1/{TRANSFORM.growth:g} at the end of the record")
+    below.semilogy(
+        time,
+        window,
+        color="tab:green",
+        label=f"exponential window, to 1/{TRANSFORM.growth:g} at the end of the record",
+    )
     scale = np.abs(faded).max()
     below.semilogy(time, np.abs(faded) / scale, color="tab:blue", label="what is transformed, its size")
     below.set_ylim(1e-6, 2.0)

@@ -30,7 +30,7 @@ FAULTS = [
         "rounding_errors: float = 1e7",
     ),
     Fault("waves that meet are let through", "guideways/waves.py", "<= 2 * doubt *", "< 0.0 * doubt *"),
-    Fault("roots left unsettled", "guideways/roots.py", "if not unsettled.any():", "if True:"),
+    Fault("roots left unsettled", "guideways/roots.py", "if not unsettled.any():", "if number > 0:"),
     Fault("two roots at one place", "guideways/roots.py", "slope - value * others", "slope - 0.0 * others"),
     Fault("roots confused on the way", "guideways/roots.py", "if certain else order", "if False else order"),
     Fault(

@@ -89,20 +89,15 @@ FAULTS = [
     ),
     Fault("window that grows too much", "response/line.py", "growth: float = 3e3", "growth: float = 1e9"),
     Fault("padding too short", "response/line.py", "wrap_around: float = 3e-6", "wrap_around: float = 0.3"),
-    Fault("cut that rings on", "response/line.py", "within: float = 0.45", "within: float = 1e9"),
+    Fault("cut that rings on", "response/line.py", "within: float = 0.2", "within: float = 1e9"),
+    Fault("cut that rings around", "response/line.py", "rings: float = 12.0", "rings: float = 0.0"),
+    Fault("held contacts for free ones", "response/line.py", "apart: float = 1 / 3", "apart: float = 0.0"),
     Fault("rounding for content", "response/line.py", "noise: float = 10.0", "noise: float = 0.0"),
     Fault(
         "octave from zero on",
         "response/accuracy.py",
         "partial(_largest_from, line, begins",
         "partial(_largest_from, line, 1",
-    ),
-    Fault("known at another speed", "response/system.py", "(id(guideway), speed)", "id(guideway)"),
-    Fault(
-        "known of another record",
-        "response/influence.py",
-        "same = (line.size, line.period, line.decay, truncation)",
-        "same = None",
     ),
     Fault(
         "acceleration sign",

@@ -150,7 +150,9 @@ FAULTS = [
     Fault("moving FRF up to a truncation", "reports/frf.py", "return min(max(ends), kept)", "return kept"),
     Fault("table wider than the console", "commands/console.py", "if pieces[-1] and width > left:", "if False:"),
     Fault("once in 1e46 seconds", "_basics/wording.py", "0 < value < NEVER", "0 < value < 0"),
-    Fault("computed each time", "_basics/remembered.py", "return value._implied[name][1]", "raise KeyError(name)"),
+    Fault(
+        "computed each time", "_basics/remembered.py", "return value._implied[name]\n", "return compute(value)\n"
+    ),
     # Results for other programs.
     Fault("radians for metres", "results/labels.py", 'if dof_unit == "rad" else 0', 'if dof_unit == "m" else 0'),
     Fault("real part twice", "results/exports/columns.py", "column.values.imag))", "column.values.real))"),

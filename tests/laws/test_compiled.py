@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf._basics.compiling import PATIENCE, compiled, compiling, numba_is_there
+from movingfrf._basics.compiling import PATIENCE, compiling, loops_for, numba_is_there
 from movingfrf._basics.spline import cubic
 from tests.analytic.vehicle_parts import RIGID
 from tests.helpers import DAMPED, UNDAMPED, VEHICLES
@@ -116,10 +116,10 @@ def test_an_infinite_response_is_refused_by_both():
 LOADED = """
 import sys
 sys.argv = ["movingfrf"]
-from movingfrf._basics.compiling import compiled
-assert compiled("guideways.compiled", {work}) is None
+from movingfrf._basics.compiling import loops_for
+assert loops_for("guideways.compiled", {work}) is None
 assert "numba" not in sys.modules
-assert (compiled("guideways.compiled", 1) is not None) == {then}
+assert (loops_for("guideways.compiled", 1) is not None) == {then}
 """
 
 
@@ -133,4 +133,42 @@ def test_a_command_loads_numba_where_it_pays(then):
 def test_what_cannot_be_loaded_is_done_without(monkeypatch):
     monkeypatch.setitem(sys.modules, "movingfrf.nothing.compiled", None)
     with compiling(True):
-        assert compiled("nothing.compiled", 1) is None
+        assert loops_for("nothing.compiled", 1) is None
+
+
+@pytest.mark.parametrize("choice", [True, False])
+@pytest.mark.parametrize("beam", ["slender", "damped", "thick"])
+def test_five_layers_near_rest_are_as_at_rest(beam, choice):
+    """Ten waves, eight of which run away to infinity; in whatever order frequencies are asked for."""
+    beams = {
+        "slender": mf.EulerBernoulliBeam(6.4e6, 60.0),
+        "damped": mf.EulerBernoulliBeam(6.4e6, 60.0, bending_damping=2e4),
+        "thick": mf.TimoshenkoBeam(6.4e6, 60.0, shear_stiffness=4e8, rotary_inertia=5.5),
+    }
+    below = mf.Spring(5e7, 3e4)
+    for mass in (200.0, 300.0, 700.0, 900.0, 500.0):
+        below = mf.OnMass(mf.Spring(1e8, 3e4), mass, below)
+    road, omega = mf.track(beams[beam], below), 2 * np.pi * np.linspace(0.0, 200.0, 1281) - 0.3j
+    with compiling(choice):
+        for grid in (omega, np.random.default_rng(0).permutation(omega)):
+            wanted = road.moving_frf([0.0, 3.0, -3.0], 0.0, grid)
+            for speed in (1e-12, 1e-10, 1e-9, 1e-6):
+                found = road.moving_frf([0.0, 3.0, -3.0], speed, grid)
+                assert off(found, wanted) < 1e-10 + speed
+
+
+def test_a_numba_that_does_not_fit_is_done_without(monkeypatch):
+    """Whatever it raises; and what cannot be compiled for want of room."""
+    from movingfrf._basics import compiling as decided
+
+    for error in (AttributeError("numpy has no attribute"), OSError(28, "No space left on device"), SystemError()):
+        decided._loaded.cache_clear()
+
+        def fails(name, error=error):
+            raise error
+
+        monkeypatch.setattr(decided, "import_module", fails)
+        with compiling(True):
+            assert loops_for("guideways.compiled", 1) is None
+    monkeypatch.undo()
+    decided._loaded.cache_clear()

@@ -84,3 +84,43 @@ def test_a_truncation_at_zero_is_a_rigid_road():
     assert {warning.filename for warning in warned} == {__file__}
     rigid = mf.simulate(mf.RigidGuideway(), truck, surface, **travel)
     assert cut.contact_force.values == pytest.approx(rigid.contact_force.values, rel=1e-6, abs=2.0)
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_a_cut_rings_neither_on_nor_around():
+    """Switched on once and for all under a truncation: in the end the load stands where it would without."""
+    for samples, truncation, left in (
+        (4000, 20.0, 3e-4),
+        (1500, 20.0, 1e-2),
+        (1000, 50.0, 1e-3),
+        (700, 100.0, 1e-4),
+    ):
+        travel = {"force": np.full((samples, 1), 1e5), "positions": [0.0], "speed": 10.0}
+        whole = mf.moving_loads(ROAD, **travel).deflection.values
+        cut = mf.moving_loads(ROAD, **travel, truncation=truncation).deflection.values
+        assert np.abs(cut - whole)[-samples // 5 :].max() < left * np.abs(whole).max()
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_a_wheel_of_its_own_swiftness_does_not_bounce_at_the_end():
+    """Its own vibration dies away within 4 ms: the padding must be longer all the same."""
+    wheel = mf.sprung_mass(mass=10.0, stiffness=1e6, damping=6e3, wheel_mass=500.0)
+    hump = mf.bump(height=0.02, width=0.1, at=0.05, length=60.0)
+    travel = {"speed": 10.0, "duration": 2.0, "blend": 0.0, "time_step": 1e-4}
+    cut, whole = (mf.simulate(ROAD, wheel, hump, truncation=f, **travel).contact_force.values for f in (500.0, 1e5))
+    assert np.abs(cut[1000:]).max() < 1e-2 * np.abs(whole).max()
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+@pytest.mark.parametrize("damping", [0.0, 3.0e4])
+def test_motion_that_dies_away_more_slowly_than_on_held_contacts_does_not_wrap_around(damping):
+    """A mass on a stiff spring: what is left of it after 1 s belongs to the guideway."""
+    road = mf.track(mf.EulerBernoulliBeam(1.573e7, 711.9), mf.Spring(8.0e6, damping))
+    mass = mf.sprung_mass(mass=5000.0, stiffness=1e9, damping=2e6)
+    hump = mf.bump(height=0.02, width=1.0, at=9.0, length=200.0)
+    short = mf.simulate(road, mass, hump, speed=10.0, duration=1.0, blend=0.0)
+    step = short.attrs["solved_step"]
+    long = mf.simulate(road, mass, hump, speed=10.0, duration=8.0, blend=0.0, solved_step=step)
+    for name in ("contact_force", "deflection", "motion"):
+        size = np.abs(long[name].values - long[name].values[0]).max()
+        assert np.abs(short[name].values - long[name].values[: short.sizes["time"]]).max() < 5e-5 * size

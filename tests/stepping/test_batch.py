@@ -26,11 +26,14 @@ def roads():
     return {"standing": mf.finite_track(TRACK, **STANDING), "travelling": travelling(0.5, 25.0, 12.0)}
 
 
+NUMBA = pytest.mark.skipif(not marching.usable("stepping.compiled"), reason="needs numba")
+
+
 @pytest.mark.parametrize("road", roads())
 @pytest.mark.parametrize("superposed", [False, True])
 @pytest.mark.parametrize(
     "compiled",
-    [False, pytest.param(True, marks=pytest.mark.skipif(not marching.numba_is_there(), reason="needs numba"))],
+    [False, pytest.param(True, marks=NUMBA)],
 )
 @pytest.mark.parametrize("method", ["cdfm", "sim"])
 def test_a_batch_has_the_numbers_of_its_cases(road, superposed, compiled, method):

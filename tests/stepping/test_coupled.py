@@ -224,7 +224,7 @@ def test_without_numba_the_plain_loops_are_used(monkeypatch):
     road = travelling(0.5, 12.0, 8.0)
     options = {"duration": 0.05, "run_in": 0.01}
     plain = over_hump(road, compiled=False, **options)
-    monkeypatch.setattr("movingfrf.stepping.marching.numba_is_there", lambda: False)
+    monkeypatch.setattr("movingfrf.stepping.marching.usable", lambda _: False)
     left_open = over_hump(road, **options)
     assert (left_open.contact_force.values == plain.contact_force.values).all()
 

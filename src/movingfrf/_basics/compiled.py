@@ -50,3 +50,11 @@ def piecewise(knots, coefficients, at, order):
                 value = value * beyond + scale[row] * coefficients[row, piece]
             found[n] = value
     return found
+
+
+def ready():
+    """Compile what is here, or load it, for arrays as they are handed over."""
+    knots, coefficients = np.array([0.0, 1.0]), np.ones((4, 1))
+    for known in (knots, coefficients):
+        known.setflags(write=False)
+    piecewise(knots, coefficients, np.array([0.5]), 0)

@@ -42,7 +42,7 @@ def numba_is_there() -> bool:
         return False
 
 
-def compiled(module: str, work: int) -> ModuleType | None:
+def loops_for(module: str, work: int) -> ModuleType | None:
     """Give a module of compiled loops if they shall be used.
 
     Parameters
@@ -66,13 +66,23 @@ def compiled(module: str, work: int) -> ModuleType | None:
     return _loaded(module) if _chosen[0] is not False else None
 
 
+def usable(module: str) -> bool:
+    """Tell whether a module of compiled loops can be used at all: asking loads it."""
+    return numba_is_there() and _loaded(module) is not None
+
+
 @cache
 def _loaded(module: str) -> ModuleType | None:
-    """Load compiled loops; None where numba does not load, or has no place for what it compiles."""
+    """Load compiled loops, and compile them if that has not been done; None where that is not possible.
+
+    A numba may not fit its NumPy, there may be no place for what it compiles, or no room on the disk.
+    """
     try:
-        return import_module(f"movingfrf.{module}")
-    except (ImportError, RuntimeError, OSError):
+        loops = import_module(f"movingfrf.{module}")
+        getattr(loops, "ready", lambda: None)()
+    except Exception:
         return None
+    return loops
 
 
 @contextmanager

@@ -1,9 +1,13 @@
-"""How loops are compiled, by numba (the extra `fast`): once per machine, kept in a cache beside their source."""
+"""How loops are compiled, by numba (the extra `fast`): once per machine, kept in a cache beside their source.
+
+Numba compiles afresh where the source of a function has changed, not where this file has: who changes it clears
+the caches.
+"""
 
 from __future__ import annotations
 
 from numba import njit
 
-# The compiler may round a product and a sum once instead of twice, and change nothing else that changes results.
-# Division by zero gives infinity, as in NumPy.
-loop = njit(cache=True, error_model="numpy", fastmath={"contract", "nsz"})
+# The compiler may take −0 for 0 and change nothing else: what it makes and what lies in the cache give the same
+# numbers. Division by zero gives infinity, as in NumPy.
+loop = njit(cache=True, error_model="numpy", fastmath={"nsz"})

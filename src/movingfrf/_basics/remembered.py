@@ -57,15 +57,15 @@ def remembered(compute: Callable[[Any], Implied]) -> Callable[[Any], Implied]:
     @wraps(compute)
     def asked(value: Any) -> Implied:
         try:
-            return value._implied[name][1]
+            return value._implied[name]
         except (AttributeError, KeyError):
-            return recalled(value, name, None, lambda: compute(value))
+            return recalled(value, name, lambda: compute(value))
 
     return asked
 
 
-def recalled(value: Any, name: str, of: object, compute: Callable[[], Implied]) -> Implied:
-    """Remember what a value and something else imply together; of each name the latest alone.
+def recalled(value: Any, name: str, compute: Callable[[], Implied]) -> Implied:
+    """Remember what a value implies by some name, where a method takes arguments.
 
     Parameters
     ----------
@@ -73,8 +73,6 @@ def recalled(value: Any, name: str, of: object, compute: Callable[[], Implied]) 
         What remembers.
     name : str
         What is remembered.
-    of : object
-        The other thing: if it is not the one that it was of, it is computed afresh.
     compute : callable
         Computes it, without arguments. What it returns is shared, as for `remembered`.
 
@@ -83,16 +81,12 @@ def recalled(value: Any, name: str, of: object, compute: Callable[[], Implied]) 
     object
         What is implied.
     """
-    try:
-        implied: dict[str, tuple[object, Implied]] = value._implied
-    except AttributeError:
-        implied = {}
-        object.__setattr__(value, "_implied", implied)
-    known = implied.get(name)
-    if known is None or not (known[0] is of or known[0] == of):
-        known = of, _sealed(compute())
-        implied[name] = known
-    return known[1]
+    if not hasattr(value, "_implied"):
+        object.__setattr__(value, "_implied", {})
+    implied: dict[str, Implied] = value._implied
+    if name not in implied:
+        implied[name] = _sealed(compute())
+    return implied[name]
 
 
 def _sealed(implied: Implied) -> Implied:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dgtsv
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.compiling import compiled
+from movingfrf._basics.compiling import loops_for
 from movingfrf._basics.values import Value
 
 
@@ -48,8 +48,12 @@ class Piecewise(Value):
         """
         places = np.asarray(at, dtype=float)
         flat = places.ravel()
-        if self.c.ndim == 2 and (loops := compiled("_basics.compiled", flat.size // 16)):
-            return loops.piecewise(self.x, self.c, flat, order).reshape(places.shape)
+        # Of a few places NumPy's answer is as soon there: a unit of work is sixteen of them.
+        if self.c.ndim == 2 and (loops := loops_for("_basics.compiled", flat.size // 16)):
+            known = [np.ascontiguousarray(part).view() for part in (self.x, self.c)]
+            for part in known:
+                part.setflags(write=False)
+            return loops.piecewise(*known, np.require(flat, requirements=("C", "W")), order).reshape(places.shape)
         inner = self.x[1:-1]
         first, last = np.searchsorted(inner, flat[[0, -1]], side="right").tolist() if flat.size else (0, 0)
         if flat.size > last - first > 0 and (flat[1:] >= flat[:-1]).all():

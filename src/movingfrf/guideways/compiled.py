@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from movingfrf._basics.loops import loop
+from movingfrf.guideways.roots import ROOTS
 
 
 @loop
@@ -83,7 +84,7 @@ def _on_circles(coefficients, roots):
 
 @loop
 def _settle(coefficients, roots, others, search):
-    """Move all roots until they stay where they are; `others` is scratch, `search` what tunes it."""
+    """Move all roots until they stay where they are, and tell whether they do; `others` is scratch."""
     near, settled_within, most, patience, askew = search
     degree = roots.size
     for number in range(1, most + 1):
@@ -110,10 +111,11 @@ def _settle(coefficients, roots, others, search):
             if not (moved <= near * size and left * left * moved <= settled_within * size * size * size):
                 settled = False
         if settled:
-            return
-        if number % patience == 0:
+            return True
+        if number % patience == 0 and number < most:
             for n in range(degree):
                 roots[n] *= 1.0 + askew * n
+    return False
 
 
 @loop
@@ -150,7 +152,7 @@ def waves(above, below, size, by_omega, omega, uncertain, search):
                     roots[n] += now - before[0, n]
                 before[1, n] = before[0, n]
                 before[0, n] = now
-        _settle(denominator, roots, others, search)
+        settled = _settle(denominator, roots, others, search)
         for a in range(degree):
             derivative[a] = (a + 1) * denominator[a + 1]
         for n in range(degree):
@@ -160,6 +162,9 @@ def waves(above, below, size, by_omega, omega, uncertain, search):
             weight[n, at] = 1j * _over(_value(numerator, root), slope)
             side = root.imag
             doubt = uncertain * _value(magnitude, math.sqrt(_squared(root)))
+            # What still moves is a multiple root, or none.
+            if not settled and _squared(_value(denominator, root)) > doubt * doubt:
+                infinite[at] = True
             if side * side * _squared(slope) <= doubt * doubt:
                 bend = 0j
                 for a in range(degree - 1, 0, -1):
@@ -190,3 +195,13 @@ def summed(kappa, weight, forward, ahead):
                         total += weight[n, at] * complex(left * math.cos(turn), left * math.sin(turn))
             frf[row, at] = total if offset >= 0.0 else -total
     return frf
+
+
+def ready():
+    """Compile what is here, or load it, for arrays as they are handed over."""
+    above, below, by_omega = np.array([[1, 1], [0, 0], [1, 0j]]), np.array([[1 + 0j]]), np.array([[0j]])
+    size = above.real.copy()
+    for table in (above, below, size, by_omega):
+        table.setflags(write=False)
+    found, _ = waves(above, below, size, by_omega, np.array([1 - 0.1j]), 1e-12, ROOTS.numbers)
+    summed(*found, np.array([0.0, 1.0]))

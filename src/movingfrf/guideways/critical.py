@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray, IntArray
-from movingfrf.guideways.waves import Ratio, residue_sum
+from movingfrf.guideways.waves import Ratio, Seen, waves
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -255,7 +255,7 @@ def speed_of_greatest_deflection(stiffness: Ratio, limit: float) -> float:
 
     def shallowness(speed: float, points: int) -> float:
         basin = length * np.linspace(-8.0, 4.0, points)
-        deflection = residue_sum(stiffness, basin, speed, np.zeros(1, complex), 0)[:, 0].real
+        deflection = waves(Seen.of(stiffness, speed), speed, np.zeros(1, complex)).summed(basin)[:, 0].real
         peak = min(max(int(deflection.argmax()), 1), points - 2)
         left, middle, right = deflection[peak - 1 : peak + 2]
         # The vertex of the parabola through the three highest points.

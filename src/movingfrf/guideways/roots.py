@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from movingfrf._basics.arrays import ComplexArray, squared
+from movingfrf._basics.arrays import ComplexArray, IntArray, squared
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +39,7 @@ class RootSearch:
     near: float = 1e-4  # [1e-6 to 1e-3]
     # Steps, and how many of them until roots that have not settled are moved off every symmetry: from a conjugate
     # pair no two real roots are ever reached, and from one place no two at all.
-    most_steps: int = 64  # [24 to 200]
+    most_steps: int = 200  # [100 to 400]
     patience: int = 8  # [6 to 16]
     askew: complex = 6e-7 + 8e-7j  # [1e-8 to 1e-5 in magnitude]
     # In NumPy the eigenvalues of companion matrices are the roots at some frequencies, and a cubic through four of
@@ -56,7 +56,7 @@ class RootSearch:
 ROOTS = RootSearch()
 
 
-def wavenumbers(coefficients: ComplexArray) -> ComplexArray:
+def wavenumbers(coefficients: ComplexArray) -> tuple[ComplexArray, IntArray]:
     """All roots κ of each polynomial [rad/m].
 
     Parameters
@@ -66,15 +66,17 @@ def wavenumbers(coefficients: ComplexArray) -> ComplexArray:
 
     Returns
     -------
-    ndarray, shape (degree, frequency)
-        The roots, as a rule each continued in its row; at every frequency in any order.
+    roots : ndarray, shape (degree, frequency)
+        As a rule each continued in its row; at every frequency in any order.
+    unsettled : ndarray
+        Numbers of the frequencies at which some still move: those of multiple roots, and of none that were found.
     """
     count = coefficients.shape[1]
     apart = min(max(count // ROOTS.fewest, 1), ROOTS.apart)
     some = coefficients[:, ::apart]
-    anchors = _settled(some, _eigenvalues(some))
+    anchors = _settled(some, _eigenvalues(some))[0]
     if apart == 1:
-        return anchors
+        return _settled(coefficients, anchors)
     return _settled(coefficients, _between(_continued(anchors), apart)[:, :count])
 
 
@@ -128,10 +130,10 @@ def _between(anchors: ComplexArray, apart: int) -> ComplexArray:
     return led.reshape(degree, -1)
 
 
-def _settled(coefficients: ComplexArray, roots: ComplexArray) -> ComplexArray:
-    """Move all roots until they stay where they are, (degree, frequency); the array is used up."""
+def _settled(coefficients: ComplexArray, roots: ComplexArray) -> tuple[ComplexArray, IntArray]:
+    """Move all roots until they stay where they are, (degree, frequency), and say where they do not."""
     moving, turn = roots, np.arange(len(roots))[:, None]
-    far = None
+    far: IntArray | None = None
     for number in range(1, ROOTS.most_steps + 1):
         with np.errstate(all="ignore"):
             step, others = _step(coefficients, moving)
@@ -146,13 +148,14 @@ def _settled(coefficients: ComplexArray, roots: ComplexArray) -> ComplexArray:
         if far is not None:
             roots[:, far] = moving
         if not unsettled.any():
-            break
+            return roots, np.zeros(0, int)
         still = np.flatnonzero(unsettled)
         far = still if far is None else far[still]
         coefficients, moving = coefficients[:, still], moving[:, still]
         if number % ROOTS.patience == 0:
             moving *= 1.0 + ROOTS.askew * turn
-    return roots
+    assert far is not None  # something has not settled
+    return roots, far
 
 
 def _step(coefficients: ComplexArray, roots: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

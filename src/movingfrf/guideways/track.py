@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.door import given
-from movingfrf._basics.remembered import Remembering, recalled, remembered
+from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import Beam
 from movingfrf.guideways.critical import (
@@ -22,7 +22,7 @@ from movingfrf.guideways.critical import (
 )
 from movingfrf.guideways.foundations import Foundation
 from movingfrf.guideways.guideway import Asked, at_offsets
-from movingfrf.guideways.waves import Ratio, Seen, Waves, waves
+from movingfrf.guideways.waves import Ratio, Seen, Waves, require_finite, waves
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,10 +145,12 @@ class Track(Remembering, Value):
         SolveError
             If the response is infinite.
         """
-        return waves(recalled(self, "seen", speed, lambda: Seen.of(self.stiffness(), speed)), speed, omega)
+        return waves(Seen.of(self.stiffness(), speed), speed, omega)
 
     def _frf(self, asked: Asked) -> ComplexArray:
-        return self.waves(asked.speed, asked.omega).summed(asked.ahead[:, 0], asked.derivative)
+        found = self.waves(asked.speed, asked.omega).summed(asked.ahead[:, 0], asked.derivative)
+        require_finite(found, asked.speed, asked.omega)
+        return found
 
 
 def track(beam: Beam, foundation: Foundation) -> Track:

@@ -17,7 +17,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray, squared
 from movingfrf._basics.checks import SolveError
-from movingfrf._basics.compiling import compiled
+from movingfrf._basics.compiling import loops_for
 from movingfrf.guideways.roots import ROOTS, inverse, wavenumbers
 
 
@@ -159,7 +159,7 @@ class Waves(NamedTuple):
         kappa, weight, forward = self
         if derivative:
             weight = weight * (1j * kappa) ** derivative
-        if loops := compiled("guideways.compiled", kappa.size * ahead.size):
+        if loops := loops_for("guideways.compiled", kappa.size * ahead.size):
             return loops.summed(kappa, weight, forward, np.require(ahead, requirements=("C", "W")))
         frf = np.zeros((ahead.size, kappa.shape[1]), complex)
         for direction in (True, False):
@@ -223,20 +223,36 @@ def waves(seen: Seen, speed: float, omega: ComplexArray) -> Waves:
         nothing = np.zeros((0, 0), complex)
         return Waves(nothing, nothing, nothing.real > 0)
     uncertain = ROOTS.rounding_errors * np.finfo(float).eps
-    if loops := compiled("guideways.compiled", (len(seen.above) - 1) * omega.size):
+    if loops := loops_for("guideways.compiled", (len(seen.above) - 1) * omega.size):
         found, infinite = loops.waves(*seen, np.require(omega, requirements=("C", "W")), uncertain, ROOTS.numbers)
     else:
         with np.errstate(all="ignore"):
             found, infinite = _waves(seen, omega, uncertain)
-    # A sum is finite only if all of its terms are.
-    if infinite.any() or not np.isfinite(found[1].sum()):
-        bad = infinite | ~np.isfinite(found[1]).all(axis=0)
-        frequency = omega[bad.argmax()] / (2 * np.pi)
-        raise SolveError(
-            f"the moving FRF is infinite at {frequency.real:.6g} Hz and {speed:.6g} m/s: an undamped resonance"
-            " of the guideway, or values beyond floating-point range"
-        )
+    if infinite.any():
+        _refuse(infinite, speed, omega)
+    require_finite(found[1], speed, omega)
     return Waves(*found)
+
+
+def require_finite(values: ComplexArray, speed: float, omega: ComplexArray) -> None:
+    """Refuse a response, (…, frequency), that is not finite at some frequency [rad/s] and this speed [m/s].
+
+    Raises
+    ------
+    SolveError
+        With the first of them.
+    """
+    # A sum is finite only if all of its terms are.
+    if not np.isfinite(values.sum()):
+        _refuse(~np.isfinite(values).all(axis=tuple(range(values.ndim - 1))), speed, omega)
+
+
+def _refuse(bad: Any, speed: float, omega: ComplexArray) -> None:
+    frequency = omega[bad.argmax()] / (2 * np.pi)
+    raise SolveError(
+        f"the moving FRF is infinite at {frequency.real:.6g} Hz and {speed:.6g} m/s: an undamped resonance"
+        " of the guideway, or values beyond floating-point range"
+    )
 
 
 def _waves(
@@ -248,7 +264,7 @@ def _waves(
     """
     s = 1j * omega
     denominator = at_frequencies(seen.above, s)
-    kappa = wavenumbers(denominator)
+    kappa, unsettled = wavenumbers(denominator)
     slope = evaluated(slopes(denominator), kappa)
     weight = evaluated(at_frequencies(seen.below, s), kappa) * inverse(slope)
     side, infinite = kappa.imag, np.zeros(omega.size, bool)
@@ -258,47 +274,19 @@ def _waves(
     if doubtful.any():
         # To second order D + D′x + D″x²/2 has a double root once D changes by D′²/2D″. For a pair κ ± iy that is
         # y|D′|/2: neither of a pair is ever taken as real.
-        bend = evaluated(slopes(slopes(denominator)), kappa)
+        bend = evaluated(slopes(slopes(denominator)), kappa) if len(denominator) > 2 else 0j * kappa
         infinite = (doubtful & (squared(slope) <= 2 * doubt * np.abs(bend))).any(axis=0)
         # Im κ(ω − i0⁺) has the sign of Re(∂D/∂ω ÷ ∂D/∂κ).
         side = np.where(doubtful, (evaluated(at_frequencies(seen.by_omega, s), kappa) / slope).real, side)
+    # What still moves is a multiple root, or none.
+    lost = np.abs(evaluated(denominator[:, unsettled], kappa[:, unsettled])) > doubt[:, unsettled]
+    infinite[unsettled] |= lost.any(axis=0)
     return (kappa, 1j * weight, side > 0), infinite
 
 
 def _by_omega(table: FloatArray) -> ComplexArray:
     """Table of the derivative with respect to ω: that by p, times i."""
     return 1j * table[:, 1:] * np.arange(1, table.shape[1])
-
-
-def residue_sum(
-    stiffness: Ratio, ahead: FloatArray, speed: float, omega: ComplexArray, derivative: int
-) -> ComplexArray:
-    """Evaluate the moving FRF as a sum of waves.
-
-    Parameters
-    ----------
-    stiffness : Ratio
-        Dynamic stiffness of the guideway [N/m²].
-    ahead : ndarray, shape (offset,)
-        Receiver minus source [m].
-    speed : float
-        Common speed [m/s].
-    omega : ndarray, shape (frequency,)
-        Frequency in the moving frame [rad/s], Im ω ≤ 0.
-    derivative : int
-        Order of the derivative with respect to x.
-
-    Returns
-    -------
-    ndarray, shape (offset, frequency)
-        Moving FRF [m/N/m^derivative].
-
-    Raises
-    ------
-    SolveError
-        If the response is infinite: an undamped guideway at a cut-off frequency or a critical speed.
-    """
-    return waves(Seen.of(stiffness, speed), speed, omega).summed(ahead, derivative)
 
 
 ONE = polynomial({(0, 0): 1.0})

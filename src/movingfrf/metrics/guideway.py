@@ -254,7 +254,7 @@ def wave_decay_rate(track: Track, frequency: ArrayLike) -> FloatArray:
         if not isinstance(track, Track):
             check.refuse("track", mistaken("track", track))
     omega: ComplexArray = (2 * np.pi * f).astype(complex)
-    kappa = wavenumbers(at_frequencies(in_moving_frame(track.stiffness().above, 0.0), 1j * omega))
+    kappa = wavenumbers(at_frequencies(in_moving_frame(track.stiffness().above, 0.0), 1j * omega))[0]
     return NEPER * np.abs(kappa.imag).min(axis=0)
 
 

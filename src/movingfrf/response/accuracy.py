@@ -101,8 +101,7 @@ def hidden(
     if spectra.shape[-1] <= first:
         return np.zeros(spectra.shape[-2])
     # What happens right after the end shows before it, for as long as the cut rings.
-    rings = 2.0 / TRANSFORM.fading_in / line.samples
-    kept = 1.0 - rings if rings < 0.5 else 1.0
+    kept = max(1.0 - 2.0 / TRANSFORM.fading_in / line.samples, 0.5)
 
     def size(some: ComplexArray) -> FloatArray:
         swings = line.swings(some, first, derivative=derivative)

@@ -6,14 +6,12 @@ road nothing is left.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
-from movingfrf._basics.remembered import Implied, Remembering, recalled
 from movingfrf.response.batches import BATCH
 from movingfrf.response.line import Line
 from movingfrf.response.truncation import TRUNCATION, Truncation
@@ -158,13 +156,7 @@ def influence(system: Sized, line: Line, energy: FloatArray, truncation: float |
     Influence
         Per band and output.
     """
-    same = (line.size, line.period, line.decay, truncation)
-
-    def known(name: str, compute: Callable[[], Implied]) -> Implied:
-        # A loop over profiles asks for the same ones again.
-        return recalled(system, name, same, compute) if isinstance(system, Remembering) else compute()
-
-    starts = known("bands", lambda: _bands(line, truncation))
+    starts = _bands(line, truncation)
     omega = line.omega((starts + np.r_[starts[1:], line.size] - 1) // 2)
     batch = BATCH.frequencies(system.ports**2)
     cases = energy.reshape(-1, *energy.shape[-2:])
@@ -173,9 +165,7 @@ def influence(system: Sized, line: Line, energy: FloatArray, truncation: float |
     total, first = np.zeros(0), 0
     for some in np.split(omega, range(batch, omega.size, batch)):
         here = slice(first, first + some.size)
-        # Of many contacts they are many.
-        few = some.size == omega.size and system.ports <= BATCH.at_once
-        gains = known("gains", lambda: system.per_unit(omega)) if few else system.per_unit(some)
+        gains = system.per_unit(some)
         if not shares:
             # Gains of many contacts are many; half of the digits tell what is negligible.
             ports, outputs, _ = gains[0].shape

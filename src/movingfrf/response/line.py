@@ -29,7 +29,16 @@ class Transform:
     growth: float = 3e3  # [1e2 to 5e3]
     # What a cut in frequency discards spreads over the inverse of the width of that cut: within so much of it, in
     # radians, nothing may grow by more than e.
-    within: float = 0.45  # [0.1 to 0.5]
+    within: float = 0.2  # [0.05 to 0.25]
+    # It rings before what was cut as well, and that comes back behind the end of the padding: so many times the
+    # inverse of the width of the cut away from the record.
+    rings: float = 12.0  # [8 to 20]
+    # The padding is so much of a record at least, or so long: on a guideway motion may die away more slowly than it
+    # would on held contacts.
+    apart: float = 1 / 3  # [1/8 to 1]
+    longest: float = 30.0  # [s; 10 to 300]
+    # And so many times the record at most, but for the fading.
+    most: float = 50.0  # [20 to 100]
     # So many rounding errors of its root mean square a spectrum is uncertain.
     noise: float = 10.0  # [3 to 30]
     # Share of a frequency over which what lies above it fades in.
@@ -94,8 +103,8 @@ class Line(Remembering):
     """A record in time and the complex frequencies that stand for it.
 
     X(ω) = ∫ x(t) e^{−iωt} dt, evaluated along ω − iη (exponential window, Kausel and Roësset 1992). The discrete
-    transform implies that all repeats itself. With η as large as the end of the record allows, a padding of a third
-    of the record damps that to `TRANSFORM.wrap_around`, and a shorter one where motion dies away.
+    transform implies that all repeats itself. With η as large as the end of the record allows, a padding of 0.6 of
+    the record damps that to `TRANSFORM.wrap_around`; a third where motion dies away; more beside a cut.
     What drives a system is asked for in steps of its own, finer or coarser than those of the record.
 
     Parameters
@@ -140,7 +149,8 @@ class Line(Remembering):
     @remembered
     def decay(self) -> float:
         """Distance η of the line of evaluation from the real axis [rad/s]."""
-        return min(math.log(TRANSFORM.growth) / self.duration, TRANSFORM.within * 2 * math.pi * self.cut)
+        allowed = min(math.log(TRANSFORM.growth) / self.duration, TRANSFORM.within * 2 * math.pi * self.cut)
+        return max(allowed, -math.log(TRANSFORM.wrap_around) / (TRANSFORM.most * self.duration))
 
     @property
     def duration(self) -> float:
@@ -155,7 +165,12 @@ class Line(Remembering):
         # A record over which the window hardly falls is short, and may be small against what follows it.
         weakened = math.log(TRANSFORM.growth / TRANSFORM.wrap_around) - self.decay * self.duration
         dead = (self.dying * over + weakened) / (self.dying + self.decay)
-        return max(dead, over, self.duration + TRANSFORM.least * self.time_step)
+        padding = max(
+            min(TRANSFORM.apart * self.duration, TRANSFORM.longest),
+            min(TRANSFORM.rings / self.cut, TRANSFORM.most * self.duration),
+            TRANSFORM.least * self.time_step,
+        )
+        return max(min(dead, TRANSFORM.most * self.duration + self.fading), over, self.duration + padding)
 
     @property
     @remembered

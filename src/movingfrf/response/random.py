@@ -194,7 +194,7 @@ def random_response(
         if wanted is not None and not check.faults and not (wanted.size and wanted.min() >= 0):
             least = f"{wanted.min():g} Hz" if wanted.size else "none"
             check.refuse("frequency", f"must hold frequencies of at least zero [Hz], got {least}")
-    system = System.of(guideway, vehicle, speed)
+    system = System(guideway=guideway, vehicle=vehicle, speed=speed)
     progress("steady state", 0.0)
     surveyed = survey(system)
     steady = surveyed.steady

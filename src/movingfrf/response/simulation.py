@@ -171,7 +171,7 @@ def driven(
     require_profile(profile)
     progress("profile", 0.0)
     excitation = excitation_of(profile, vehicle, journey)
-    system = System.of(guideway, vehicle, journey.speed)
+    system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)
     progress("steady state", 0.0)
     surveyed = survey(system)
     driven_by, response, histories, left_out = _solved(system, excitation, journey, progress)

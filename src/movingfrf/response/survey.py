@@ -8,7 +8,6 @@ import numpy as np
 
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.remembered import recalled
 from movingfrf.guideways.guideway import findings_of
 from movingfrf.response.along import Along
 from movingfrf.response.batches import BATCH, unthreaded
@@ -51,6 +50,7 @@ class Survey:
     findings: tuple[find.Finding, ...]
 
 
+@unthreaded
 def survey(system: System) -> Survey:
     """Look at a system before it is solved.
 
@@ -69,11 +69,6 @@ def survey(system: System) -> Survey:
     SolveError
         If vehicle and guideway are unstable together.
     """
-    return recalled(system, "survey", None, lambda: _surveyed(system))
-
-
-@unthreaded
-def _surveyed(system: System) -> Survey:
     critical_speed = float(system.guideway.critical_speed)
     findings = [*find.near_critical(system.speed, critical_speed), *findings_of(system.guideway)]
     batch = BATCH.frequencies(system.entries)

@@ -15,9 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
-from movingfrf._basics.remembered import Remembering, recalled, remembered
-from movingfrf._basics.values import Value
+from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf.guideways.guideway import Guideway
+from movingfrf.guideways.track import Track
+from movingfrf.guideways.waves import Seen, waves
 from movingfrf.response.along import Along, Order, in_order, with_diagonal
 from movingfrf.response.batches import BATCH, applied, multiplied, solved
 from movingfrf.response.line import Histories, Line
@@ -112,14 +113,6 @@ class System(Remembering):
     vehicle: Vehicle
     speed: float
 
-    @classmethod
-    def of(cls, guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
-        """Put a vehicle on a guideway; on the one that it was on before, with all that is known of both."""
-        made = cls(guideway=guideway, vehicle=vehicle, speed=speed)
-        # What is no value may be another one by now. What is remembered keeps its guideway, and so the id.
-        same = (id(guideway), speed)
-        return recalled(vehicle, "system", same, lambda: made) if isinstance(guideway, Value) else made
-
     @property
     def dynamics(self) -> Dynamics:
         """The vehicle at its contacts."""
@@ -136,7 +129,7 @@ class System(Remembering):
         """The vehicle from car to car, where it is solved so; None where all contacts are solved at once."""
         order = in_order(self.vehicle)
         long = len(order.blocks) > 1 and self.ports > BATCH.at_once
-        return order if long and hasattr(self.guideway, "waves") else None
+        return order if long and isinstance(self.guideway, Track) else None
 
     @property
     def entries(self) -> int:
@@ -156,6 +149,13 @@ class System(Remembering):
 
     @property
     @remembered
+    def seen(self) -> Seen:
+        """The dynamic stiffness of a track as the vehicle sees it."""
+        assert isinstance(self.guideway, Track)
+        return Seen.of(self.guideway.stiffness(), self.speed)
+
+    @property
+    @remembered
     def offsets(self) -> tuple[FloatArray, IntArray]:
         """Distinct offsets along the guideway [m], and which of them is that of a contact from a contact."""
         distinct, which = np.unique(self.vehicle.offsets["ahead"], return_inverse=True)
@@ -163,14 +163,14 @@ class System(Remembering):
 
     def at(self, omega: ComplexArray) -> Tables | Along:
         """Evaluate both sides at some frequencies [rad/s]."""
-        if not hasattr(self.guideway, "waves"):
+        if not isinstance(self.guideway, Track):
             frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
             return Tables(omega, np.moveaxis(frf, 0, -1), self.dynamics.stiffness(omega))
-        waves = self.guideway.waves(self.speed, omega)
+        found = waves(self.seen, self.speed, omega)
         if self.train:
-            return Along(self.train, omega, waves)
+            return Along(self.train, omega, found)
         distinct, which = self.offsets
-        return Tables(omega, waves.summed(distinct)[which], self.dynamics.stiffness(omega))
+        return Tables(omega, found.summed(distinct)[which], self.dynamics.stiffness(omega))
 
     def at_each(self, omegas: Sequence[ComplexArray]) -> Iterator[Tables | Along]:
         """Evaluate both sides at sets of frequencies [rad/s], as many sets in one go as a batch holds."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -268,22 +267,13 @@ def labelled(values: Mapping[str, ArrayLike], attributes: Mapping[str, str | flo
         variable = xr.Variable(label.dims, value, {**said, "long_name": label.long_name})
         if label.dims == (name,):
             # Made here: xarray would find out that they are needed, in twice the time.
-            few = value.size <= 64 and value.ndim == 1
-            indexes[name] = _index(name, tuple(value.tolist())) if few else PandasIndex(value, name)
+            indexes[name] = PandasIndex(value, name, coord_dtype=value.dtype)
             variable = indexes[name].create_variables({name: variable})[name]
         if label.coordinate:
             variable.encoding["_FillValue"] = None  # of a coordinate nothing is missing
         (coordinates if label.coordinate else data)[name] = variable
     kept = {"Conventions": "CF-1.11"} if _keeps_cf(arrays, indexes) else {}
     return xr.Dataset(data, xr.Coordinates(coordinates, indexes), {**attributes, **kept})
-
-
-@lru_cache(maxsize=64)
-def _index(name: str, values: tuple[float | str, ...]) -> PandasIndex:
-    """Make the index of a few contacts or degrees of freedom once: it cannot be changed."""
-    from xarray.indexes import PandasIndex
-
-    return PandasIndex(np.array(values), name)
 
 
 def _keeps_cf(arrays: Mapping[str, NDArray[Any]], along: Iterable[str]) -> bool:

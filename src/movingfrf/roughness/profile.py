@@ -233,7 +233,7 @@ class Profile(Remembering, Value):
         many = 2**20
         if self.stations.size > many:
             return self._along(path)
-        return recalled(self, f"along path {path}", None, lambda: self._along(path))
+        return recalled(self, f"along path {path}", lambda: self._along(path))
 
     def _along(self, path: int) -> Piecewise:
         elevation = np.asarray(self.elevation)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
-from movingfrf._basics.compiling import numba_is_there
+from movingfrf._basics.compiling import usable
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.results.labels import attributes, labelled
@@ -163,7 +163,7 @@ def convolved(
     # (receiver, source, time): newest force last, as the forces stand in their record.
     kernel = np.ascontiguousarray(whole.T[columns])
     backwards = np.ascontiguousarray(kernel[:, :, :0:-1])
-    advance = _compiled() if (numba_is_there() if compiled is None else compiled) else _plain
+    advance = _compiled() if (usable("stepping.compiled") if compiled is None else compiled) else _plain
     state = np.zeros((3, len(tie.mass)))
     # The elevation may begin with a jump: forces act from t = 0 on, the first one by half of its hat.
     first = tie.springs * seen.roughness[0] + tie.dashpots * seen.rate[0]

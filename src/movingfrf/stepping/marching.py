@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray, IntArray
 from movingfrf._basics.checks import SolveError
-from movingfrf._basics.compiling import numba_is_there
+from movingfrf._basics.compiling import usable
 from movingfrf._basics.progress import Progress, silent
 from movingfrf.stepping.exchange import SOLVED, Iteration, exchanged
 from movingfrf.stepping.factors import BandSolver, SparseSolver, bands_of, half_width, indefinite, solver
@@ -252,7 +252,7 @@ class March:
     @property
     def uses_compiled(self) -> bool:
         """Whether the compiled loops are used: where they apply and numba is installed, unless told otherwise."""
-        return self._suits and numba_is_there() if self.compiled is None else self.compiled
+        return self._suits and usable("stepping.compiled") if self.compiled is None else self.compiled
 
     @cached_property
     def _suits(self) -> bool:

@@ -115,3 +115,14 @@ def response(omega, displacement, poles, entered, moving, prescribed, pushing, d
                 for k in range(count):
                     force[case, c, first + k] = complex(total[0, k], total[1, k])
     return moved, force
+
+
+def ready():
+    """Compile what is here, or load it, for arrays as they are handed over."""
+    omega, poles, direct = np.array([1 - 0.1j]), np.array([-1 + 0j]), np.ones((1, 1, 1))
+    coefficients, moving, prescribed = np.ones((1, 1, 1), complex), np.ones((1, 1), complex), np.zeros((1, 0))
+    for known in (poles, direct, coefficients, moving, prescribed):
+        known.setflags(write=False)
+    stiffness(omega, poles, coefficients, direct, 1)
+    below = np.ones((1, 1, 1), complex)
+    response(omega, below, poles, coefficients, moving, prescribed, coefficients, direct, 1)

@@ -24,7 +24,7 @@ import numpy as np
 import scipy.linalg
 
 from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from movingfrf._basics.compiling import compiled
+from movingfrf._basics.compiling import loops_for
 from movingfrf._basics.remembered import Remembering, remembered
 
 
@@ -242,7 +242,7 @@ class Part(Remembering):
     def _compiled(self, omega: ComplexArray) -> ModuleType | None:
         """Give compiled loops where they gain on BLAS: of few modes."""
         modes = self.modes.poles.size if self.modes else 0
-        return compiled("vehicles.compiled", modes * omega.size) if modes <= SOLUTION.few else None
+        return loops_for("vehicles.compiled", modes * omega.size) if modes <= SOLUTION.few else None
 
     @property
     @remembered

@@ -23,6 +23,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from movingfrf._basics.checks import ValidityWarning, checking
+from movingfrf._basics.compiling import compiling
 from movingfrf._basics.door import mistaken
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.undoing import carried_out
@@ -128,6 +129,8 @@ class Comparison(Value):
         return next(iter(self.reference.quantities))
 
 
+# So many solutions repay what it takes to load compiled loops.
+@compiling(True)
 def compare(
     scenario: Scenario,
     methods: Sequence[str] | None = None,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -123,7 +124,8 @@ def _transformed(case: Case, guideway: Guideway) -> Solve:
         passage = replace(case.scenario.case, guideway=guideway, journey=case.journey)
         return lambda loads: replace(passage, loads=loads).run()
     vehicle, journey = case.vehicle, case.journey
-    return lambda profile: driven(guideway, vehicle, profile, journey)
+    # Copies remember nothing: no run finds done what another one did.
+    return lambda profile: driven(copy(guideway), copy(vehicle), profile, journey)
 
 
 def _moving_frf(case: Case) -> Solve:
