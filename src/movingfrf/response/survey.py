@@ -8,6 +8,7 @@ import numpy as np
 
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.remembered import recalled
 from movingfrf.guideways.guideway import findings_of
 from movingfrf.response.along import Along
 from movingfrf.response.batches import BATCH, unthreaded
@@ -72,7 +73,9 @@ def survey(system: System) -> Survey:
     critical_speed = float(system.guideway.critical_speed)
     findings = [*find.near_critical(system.speed, critical_speed), *findings_of(system.guideway)]
     batch = BATCH.frequencies(system.entries)
-    path = stretches(along_the_axis(system.vehicle, system.speed), batch)
+    # The vehicle alone tells along what path.
+    vehicle, speed = system.vehicle, system.speed
+    path = stretches(recalled(vehicle, "path along the axis", lambda: along_the_axis(vehicle, speed)), batch)
     tables = system.at_each([np.zeros(1, complex), *path])
     steady = steady_state(system, next(tables))
     require_stable(system, tables)

@@ -119,21 +119,25 @@ class Vehicle(Remembering, Value):
         return self.mass, self.damping, self.stiffness, self.contact_map  # type: ignore[return-value]
 
     @property
+    @remembered
     def springs(self) -> FloatArray:
         """Stiffness of each contact [N/m], `inf` where it is rigid."""
         return np.array([contact.stiffness for contact in self.contacts], float)
 
     @property
+    @remembered
     def dashpots(self) -> FloatArray:
         """Damping of each contact [N s/m]."""
         return np.array([contact.damping for contact in self.contacts], float)
 
     @property
+    @remembered
     def positions(self) -> FloatArray:
         """Position of each contact ahead of the reference point [m]."""
         return np.array([contact.position for contact in self.contacts])
 
     @property
+    @remembered
     def across(self) -> FloatArray:
         """Position of each contact left of the centre line [m]."""
         return np.array([contact.across for contact in self.contacts])
@@ -193,11 +197,13 @@ class Vehicle(Remembering, Value):
         return offsets
 
     @property
+    @remembered
     def weights(self) -> FloatArray:
         """Weight along each degree of freedom [N]."""
         return GRAVITY * self.matrices[0] @ np.asarray(self.vertical)
 
     @property
+    @remembered
     def static_loads(self) -> FloatArray:
         """Contact forces of the vehicle at rest on a rigid flat road [N]."""
         impedance, rows, _ = self._held()
