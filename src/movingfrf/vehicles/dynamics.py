@@ -467,11 +467,17 @@ def _part(
 
 def _connected(coupling: FloatArray, contact_map: FloatArray) -> Sequence[IntArray]:
     """Degrees of freedom that act on each other, directly or by way of a contact, group by group."""
-    from scipy.sparse.csgraph import connected_components
-
     touching = np.abs(contact_map)
-    count, group = connected_components(coupling + touching.T @ touching > 0, directed=False)
-    return [np.flatnonzero(group == number) for number in range(count)]
+    linked, left = coupling + touching.T @ touching > 0, np.ones(len(coupling), bool)
+    groups: list[IntArray] = []
+    while left.any():
+        group = np.zeros_like(left)
+        grown = np.arange(left.size) == left.argmax()
+        while grown.sum() > group.sum():
+            group, grown = grown, grown | linked[grown].any(axis=0)
+        groups.append(np.flatnonzero(group))
+        left &= ~group
+    return groups
 
 
 def state_matrix(own: Quadratic) -> FloatArray:
