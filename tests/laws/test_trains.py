@@ -9,7 +9,7 @@ import movingfrf as mf
 from movingfrf.guideways.waves import Waves
 from movingfrf.response import along, batches, stability
 from movingfrf.response import system as systems
-from movingfrf.response.along import Along, in_order
+from movingfrf.response.along import CarByCar, in_order
 from movingfrf.response.stability import along_the_axis, growing_vibrations
 from movingfrf.response.survey import survey
 from movingfrf.response.system import System, Tables
@@ -84,7 +84,7 @@ def test_a_train_is_solved_as_all_contacts_at_once(road, name, share):
     speed = share * (guideway.critical_speed if np.isfinite(guideway.critical_speed) else 300.0)
     omega = 2 * np.pi * np.geomspace(0.05, 250.0, 12) - 0.1j
     here, there = (
-        Along(in_order(vehicle), omega, guideway.waves(speed, omega)),
+        CarByCar(in_order(vehicle), omega, guideway.waves(speed, omega)),
         dense(guideway, vehicle, speed, omega),
     )
     # Without damping the equations themselves leave a digit less.
@@ -128,7 +128,7 @@ def test_waves_on_each_side_may_be_more_and_fewer(ways):
     given = random.normal(size=(1, len(vehicle.contacts), 12)) + 0j
     there = Tables(omega, frf, vehicle.dynamics().stiffness(omega))
     for mine, others in zip(
-        Along(in_order(vehicle), omega, waves).coupled(given), there.coupled(given), strict=True
+        CarByCar(in_order(vehicle), omega, waves).coupled(given), there.coupled(given), strict=True
     ):
         assert off(mine, others) < 1e-11
 
@@ -269,7 +269,7 @@ def test_cost_is_in_proportion_to_the_cars(monkeypatch):
         system = System(guideway=DAMPED["rail_pad_sleeper_ballast"], vehicle=train, speed=60.0)
         counted[0] = 0
         tables = system.at(omega)
-        assert isinstance(tables, Along)
+        assert isinstance(tables, CarByCar)
         tables.coupled(np.ones((4 * cars, omega.size), complex))
         assert tables.pieces
         costs.append(counted[0])

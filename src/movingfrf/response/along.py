@@ -173,7 +173,7 @@ class Met(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Along:
+class CarByCar:
     """Both sides of the ports of a train at some frequencies, block by block; `Tables` has them all at once.
 
     Parameters
@@ -190,13 +190,13 @@ class Along:
     omega: ComplexArray
     waves: Waves
 
-    def between(self, first: int, last: int) -> Along:
+    def between(self, first: int, last: int) -> CarByCar:
         """Take some of the frequencies."""
         kappa, weight, forward = self.waves
         some = Waves(kappa[:, first:last], weight[:, first:last], forward[:, first:last])
-        return Along(self.order, self.omega[first:last], some)
+        return CarByCar(self.order, self.omega[first:last], some)
 
-    def admitted(self, truncation: Truncation) -> Along:
+    def admitted(self, truncation: Truncation) -> CarByCar:
         """Let the guideway stiffen beyond a truncation."""
         weight = truncation.admitted(self.waves.weight, self.omega)
         return replace(self, waves=self.waves._replace(weight=weight))

@@ -10,7 +10,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.checks import SolveError
-from movingfrf.response.along import Along, determinants
+from movingfrf.response.along import CarByCar, determinants
 from movingfrf.response.batches import BATCH
 from movingfrf.response.system import System, Tables
 from movingfrf.vehicles.vehicle import Vehicle
@@ -127,7 +127,7 @@ def stretches(path: ComplexArray, most: int) -> list[ComplexArray]:
     return [path[first : first + steps + 1] for first in range(0, path.size - 1, steps)]
 
 
-def growing_vibrations(system: System, along_axis: Iterable[Tables | Along]) -> int:
+def growing_vibrations(system: System, along_axis: Iterable[Tables | CarByCar]) -> int:
     """Count the vibrations of the coupled system that grow in time, conjugate pairs counted twice.
 
     Every zero of det(I + D G) with Im ω < 0 turns the phase of the determinant by one full circle along the
@@ -137,7 +137,7 @@ def growing_vibrations(system: System, along_axis: Iterable[Tables | Along]) -> 
     ----------
     system : System
         Vehicle and road.
-    along_axis : iterable of Tables or Along
+    along_axis : iterable of Tables or CarByCar
         Both sides at the frequencies of `along_the_axis`, stretch by stretch.
 
     Returns
@@ -149,9 +149,9 @@ def growing_vibrations(system: System, along_axis: Iterable[Tables | Along]) -> 
     return max(round(-turned / np.pi), 0)
 
 
-def _turned(system: System, along_axis: Tables | Along) -> float:
+def _turned(system: System, along_axis: Tables | CarByCar) -> float:
     """Angle by which the determinant turns along a stretch of the path [rad]."""
-    if isinstance(along_axis, Along):
+    if isinstance(along_axis, CarByCar):
         return _turned_with_slopes(system, along_axis.omega)
     path, matrices = along_axis.omega, _stacked(along_axis)
     first, middle, last = path[:-1:2], path[1::2], path[2::2]
@@ -208,7 +208,7 @@ def _unwound(change: ComplexArray) -> ComplexArray:
     return change - 2j * np.pi * np.round(change.imag / (2 * np.pi))
 
 
-def _logarithm(tables: Tables | Along) -> ComplexArray:
+def _logarithm(tables: Tables | CarByCar) -> ComplexArray:
     """Logarithm of the determinant of I + D G, whole turns left out, shape (frequency,)."""
     with np.errstate(divide="ignore"):
         return np.sum([times * np.log(determinants(piece)) for times, piece in tables.pieces], axis=0)
@@ -237,14 +237,14 @@ def _factors(before: ComplexArray, after: ComplexArray) -> ComplexArray:
     return np.linalg.eigvals(np.linalg.solve(before, after)).astype(complex)
 
 
-def require_stable(system: System, along_axis: Iterable[Tables | Along]) -> None:
+def require_stable(system: System, along_axis: Iterable[Tables | CarByCar]) -> None:
     """Refuse a system that rings itself up: it has no steady state to vibrate about.
 
     Parameters
     ----------
     system : System
         Vehicle and road.
-    along_axis : iterable of Tables or Along
+    along_axis : iterable of Tables or CarByCar
         Both sides at the frequencies of `along_the_axis`, stretch by stretch.
 
     Raises

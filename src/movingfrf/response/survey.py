@@ -10,7 +10,7 @@ import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.remembered import recalled
 from movingfrf.guideways.guideway import findings_of
-from movingfrf.response.along import Along
+from movingfrf.response.along import CarByCar
 from movingfrf.response.batches import BATCH, unthreaded
 from movingfrf.response.stability import along_the_axis, require_stable, stretches
 from movingfrf.response.system import System, Tables
@@ -82,14 +82,14 @@ def survey(system: System) -> Survey:
     return Survey(steady=steady, critical_speed=critical_speed, findings=tuple(findings))
 
 
-def steady_state(system: System, at_rest: Tables | Along) -> SteadyState:
+def steady_state(system: System, at_rest: Tables | CarByCar) -> SteadyState:
     """Steady travel on a smooth road.
 
     Parameters
     ----------
     system : System
         Vehicle and road.
-    at_rest : Tables or Along
+    at_rest : Tables or CarByCar
         Both sides at ω = 0.
 
     Returns

@@ -19,7 +19,7 @@ from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import Seen, waves
-from movingfrf.response.along import Along, Order, in_order, with_diagonal
+from movingfrf.response.along import CarByCar, Order, in_order, with_diagonal
 from movingfrf.response.batches import BATCH, applied, multiplied, solved
 from movingfrf.response.line import Histories, Line
 from movingfrf.response.truncation import Truncation
@@ -161,18 +161,18 @@ class System(Remembering):
         distinct, which = np.unique(self.vehicle.offsets["ahead"], return_inverse=True)
         return distinct, which.reshape(self.ports, self.ports)
 
-    def at(self, omega: ComplexArray) -> Tables | Along:
+    def at(self, omega: ComplexArray) -> Tables | CarByCar:
         """Evaluate both sides at some frequencies [rad/s]."""
         if not isinstance(self.guideway, Track):
             frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
             return Tables(omega, np.moveaxis(frf, 0, -1), self.dynamics.stiffness(omega))
         found = waves(self.seen, self.speed, omega)
         if self.train:
-            return Along(self.train, omega, found)
+            return CarByCar(self.train, omega, found)
         distinct, which = self.offsets
         return Tables(omega, found.summed(distinct)[which], self.dynamics.stiffness(omega))
 
-    def at_each(self, omegas: Sequence[ComplexArray]) -> Iterator[Tables | Along]:
+    def at_each(self, omegas: Sequence[ComplexArray]) -> Iterator[Tables | CarByCar]:
         """Evaluate both sides at sets of frequencies [rad/s], as many sets in one go as a batch holds."""
         most, waiting = BATCH.frequencies(self.entries), list(omegas)
         while waiting:
