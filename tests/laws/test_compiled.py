@@ -172,3 +172,18 @@ def test_a_numba_that_does_not_fit_is_done_without(monkeypatch):
             assert loops_for("guideways.compiled", 1) is None
     monkeypatch.undo()
     decided._loaded.cache_clear()
+
+
+def test_a_run_of_the_reference_case_does_without_numba(tmp_path):
+    """As `python -m movingfrf` too, whose name Python has replaced by a path when it matters."""
+    start = [sys.executable, "-X", "importtime", "-m", "movingfrf"]
+    subprocess.run([*start[:1], *start[3:], "new", tmp_path / "one.toml"], check=True, capture_output=True)
+    done = subprocess.run(
+        [*start, "run", tmp_path / "one.toml", "--output", tmp_path / "out", "--no-report"],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    loaded = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
+    assert "movingfrf.response.simulation" in loaded
+    assert "numba" not in loaded

@@ -26,6 +26,9 @@ def is_command() -> bool:
         given = sys.orig_argv
         named = [at for at, option in enumerate(given) if option[:1] == "-" != option[1:2] and option[-1:] == "m"]
         script = given[named[0] + 1] if named and named[0] + 1 < len(given) else ""
+    folder, name = os.path.split(script)
+    # The module that was looked for, once it has been found.
+    script = folder if name == "__main__.py" else script
     return os.path.basename(script).partition(".")[0] in ("movingfrf", "movingfrf-script")
 
 
