@@ -8,7 +8,7 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.response.line import Given, Line, folded
-from movingfrf.response.sampling import SAMPLING, excited
+from movingfrf.response.sampling import SAMPLING, Driving, excited
 from movingfrf.response.system import System
 from tests.helpers import DAMPED, HALF_TRUCK, QUARTER_TRUCK
 
@@ -359,11 +359,11 @@ def test_a_second_look_is_like_a_first_one(less):
         return Given(1e-4 * np.interp(line.instants, np.linspace(0.0, 2.0, 26), np.r_[0, corners[1:]])[None])
 
     stricter = replace(SAMPLING.road, negligible=less * SAMPLING.road.negligible)
-    first = excited(system, given, line, 0.08, truncation=None)
+    first = excited(system, Driving(given, 0.08), line, truncation=None)
     few, looks[0] = looks[0], 0
-    afresh = excited(system, given, line, 0.08, truncation=None, wanted=stricter)
+    afresh = excited(system, Driving(given, 0.08), line, truncation=None, wanted=stricter)
     several, looks[0] = looks[0], 0
-    after = excited(system, given, line, 0.08, truncation=None, wanted=stricter, after=first)
+    after = excited(system, Driving(given, 0.08), line, truncation=None, wanted=stricter, after=first)
     assert looks[0] == several - (few - 1)
     assert (after.line, after.truncation, after.left_out) == (afresh.line, afresh.truncation, afresh.left_out)
     for mine, others in ((after.spectra, afresh.spectra), (after.fade, afresh.fade), (after.beyond, afresh.beyond)):

@@ -101,7 +101,14 @@ SCENARIOS = [
 SHOWN = ("reports/", "commands/", "results/files", "results/export", "_basics/wording")
 
 # These first where the fault lies in what is sampled where.
-SAMPLED = ("response/sampling", "response/influence", "response/accuracy", "response/line", "roughness/excitation")
+SAMPLED = (
+    "response/sampling",
+    "response/influence",
+    "response/accuracy",
+    "response/line",
+    "roughness/excitation",
+    "roughness/along",
+)
 SAMPLING = ["tests/analytic/test_excitation.py", "tests/analytic/test_sampling.py", "tests/test_honest.py"]
 
 # These first where the fault lies in the independent way, and last otherwise.

@@ -8,7 +8,7 @@ import pytest
 import movingfrf as mf
 from movingfrf.response import batches
 from movingfrf.response.line import Line
-from movingfrf.response.sampling import excited
+from movingfrf.response.sampling import Driving, excited
 from movingfrf.response.solve import solve
 from movingfrf.response.stability import _turned, along_the_axis, stretches
 from movingfrf.response.survey import survey
@@ -56,7 +56,9 @@ def test_vehicles(name):
     # One road is rigid from where on it may be for each of them.
     def cut(some):
         step = LINE.time_step
-        found = excited(system, lambda line: line.given(some), LINE, step, truncation=None, solved_step=step)
+        found = excited(
+            system, Driving(lambda line: line.given(some), step), LINE, truncation=None, solved_step=step
+        )
         return found.truncation
 
     assert cut(roads).frequency == max(cut(roads[index]).frequency for index in np.ndindex(2, 2))
@@ -122,7 +124,7 @@ def test_many_contacts_take_little_memory_before_they_are_solved():
     tracemalloc.start()
     survey(system)
     surveyed = tracemalloc.get_traced_memory()[1]
-    excited(system, lambda line: line.given(np.ones((1, 100, 500))), line, 2e-3, truncation=70.0)
+    excited(system, Driving(lambda line: line.given(np.ones((1, 100, 500))), 2e-3), line, truncation=70.0)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     # All at once tables took 420 MB; then there is what each contact does to each of 400 outputs, in bands.

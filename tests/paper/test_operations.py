@@ -10,7 +10,7 @@ import pytest
 
 import movingfrf as mf
 from movingfrf.response.line import Line
-from movingfrf.response.sampling import SAMPLING, excited
+from movingfrf.response.sampling import SAMPLING, Driving, excited
 from movingfrf.response.system import Prescribed
 from movingfrf.response.truncation import Truncation
 from movingfrf.studies.paper import operations
@@ -288,9 +288,8 @@ def test_moving_frf_is_four_products_per_frequency(positions, points, count):
     ).deflection.values
     solved = excited(
         Prescribed(guideway=TRACK, loads=np.array(positions), points=np.array(points), speed=10.0),
-        lambda line: line.given(forces.T),
+        Driving(lambda line: line.given(forces.T), step),
         Line(samples=samples, time_step=step, cut=Truncation(frequency=truncation).width),
-        step,
         truncation=np.inf,
         wanted=SAMPLING.loads,
     )

@@ -1,10 +1,11 @@
-"""Polynomials from knot to knot, compiled by numba (the extra `fast`); `spline` has them in NumPy."""
+"""Splines and smooth steps, compiled by numba (the extra `fast`); `spline` and `smooth` have them in NumPy."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from movingfrf._basics.loops import loop
+from movingfrf._basics.smooth import coefficients as of_step
 
 
 @loop
@@ -52,9 +53,28 @@ def piecewise(knots, coefficients, at, order):
     return found
 
 
+@loop
+def smoothest_step(x, coefficients):
+    """Step from 0 to 1; as `smooth.smoothest_step`."""
+    step = np.empty(x.size)
+    for n in range(x.size):
+        near = min(x[n], 1.0 - x[n])
+        if near <= 0.0:
+            step[n] = 1.0 if x[n] > 0.5 else 0.0
+        else:
+            rising, power = 0.0, 1.0
+            for coefficient in coefficients:
+                rising = rising * -near + coefficient
+                power *= near
+            rising *= power
+            step[n] = 1.0 - rising if x[n] > 0.5 else rising
+    return step
+
+
 def ready():
     """Compile what is here, or load it, for arrays as they are handed over."""
     knots, coefficients = np.array([0.0, 1.0]), np.ones((4, 1))
     for known in (knots, coefficients):
         known.setflags(write=False)
     piecewise(knots, coefficients, np.array([0.5]), 0)
+    smoothest_step(np.array([0.5]), of_step())

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import comb
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.compiling import loops_for
 
 
 def smooth_step(x: FloatArray) -> FloatArray:
@@ -21,6 +23,15 @@ def smooth_step(x: FloatArray) -> FloatArray:
     return x * x * x * (10.0 + x * (6.0 * x - 15.0))
 
 
+@cache
+def coefficients() -> tuple[float, ...]:
+    """Of x⁷ times a polynomial in −x, as which `smoothest_step` begins: those of its powers, the highest first."""
+    flat = 6
+    return tuple(
+        comb(flat + power, power) * float(comb(2 * flat + 1, flat - power)) for power in range(flat, -1, -1)
+    )
+
+
 def smoothest_step(x: FloatArray) -> FloatArray:
     """Polynomial from 0 at x ≤ 0 to 1 at x ≥ 1, its first six derivatives zero at both ends.
 
@@ -32,15 +43,18 @@ def smoothest_step(x: FloatArray) -> FloatArray:
     >>> smoothest_step(np.array([-1.0, 0.0, 0.5, 1.0, 2.0])).tolist()
     [0.0, 0.0, 0.5, 1.0, 1.0]
     """
-    flat = 6
+    if loops := loops_for("_basics.compiled", x.size // 16):
+        flat = np.require(x, float, ("C", "W")).ravel()
+        found: FloatArray = loops.smoothest_step(flat, coefficients()).reshape(x.shape)
+        return found
     step = (x > 0.5).astype(float)
     # As a rule x ascends over far more than the step.
     within = np.flatnonzero((x > 0.0) & (x < 1.0))
     nearest = 0.5 - np.abs(x[within] - 0.5)
     rising = np.zeros_like(nearest)
-    for power in range(flat, -1, -1):
-        rising = rising * -nearest + comb(flat + power, power) * comb(2 * flat + 1, flat - power)
-    rising *= nearest ** (flat + 1)
+    for coefficient in coefficients():
+        rising = rising * -nearest + coefficient
+    rising *= nearest ** len(coefficients())
     step[within] += np.where(x[within] > 0.5, -rising, rising)
     return step
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import ComplexArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.door import given
-from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.remembered import Remembering, recalled, remembered
 from movingfrf._basics.values import Value
 from movingfrf.guideways.beams import Beam
 from movingfrf.guideways.critical import (
@@ -42,7 +42,11 @@ class Track(Remembering, Value):
 
     def stiffness(self, *, damped: bool = True) -> Ratio:
         """Dynamic stiffness of the track for a wave e^{i(Ωt + κx)} [N/m²], as a ratio of polynomials."""
-        return self.beam.beam_stiffness(damped=damped) + self.foundation.foundation_stiffness(damped=damped)
+        return recalled(
+            self,
+            "stiffness" if damped else "stiffness without damping",
+            lambda: self.beam.beam_stiffness(damped=damped) + self.foundation.foundation_stiffness(damped=damped),
+        )
 
     @property
     @remembered

@@ -98,12 +98,14 @@ def in_moving_frame(table: NumberArray, speed: float) -> ComplexArray:
 def _expanded(table: NumberArray, linear: complex) -> ComplexArray:
     """Put p = s + linear κ into a table, shape (power of κ, power of s)."""
     powers_kappa, powers_p = table.shape
-    expanded = np.zeros((powers_kappa + (powers_p - 1 if linear else 0), powers_p), complex)
-    for a, b in np.argwhere(table).tolist():
-        for j in range(b + 1 if linear else 1):
-            expanded[a + j, b - j] += table[a, b] * comb(b, j) * linear**j
-    degree = max((n for n, row in enumerate(expanded) if row.any()), default=0)
-    return expanded[: degree + 1]
+    expanded = [[0j] * powers_p for _ in range(powers_kappa + (powers_p - 1 if linear else 0))]
+    for a, row in enumerate(table.tolist()):
+        for b, coefficient in enumerate(row):
+            for j in range((b + 1 if linear else 1) if coefficient else 0):
+                expanded[a + j][b - j] += coefficient * comb(b, j) * linear**j
+    while len(expanded) > 1 and not any(expanded[-1]):
+        expanded.pop()
+    return np.array(expanded)
 
 
 def at_frequencies(expanded: NumberArray, s: NumberArray) -> Any:

@@ -68,7 +68,7 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
         (response.force, 0, histories.force.values, beyond[: response.force.shape[-2]]),
         (response.motion, 2, histories.acceleration.values, beyond[-response.motion.shape[-2] :]),
     ):
-        octave = _each(spectra, partial(_largest_from, line, begins, order))
+        octave = _each(spectra[..., begins:], partial(_largest_swing, line, begins, order))
         peaks = max(peaks, float(relative(share * octave, largest(records)).max(initial=0.0)))
     # No more than all can be missing; and no less than what is known to be left out, relative L2.
     return min(max(peaks, driven_by.missing), 1.0)
@@ -115,9 +115,10 @@ def hidden(
     return share.max(axis=0)
 
 
-def _largest_from(line: Line, first: int, order: int, some: ComplexArray) -> FloatArray:
-    """Largest values in a record of what lies from a frequency on, (case, port, frequency) to (case, port)."""
-    return largest(line.records(some * line.from_on(first, some.shape[-1]), derivative=order).values)
+def _largest_swing(line: Line, first: int, order: int, some: ComplexArray) -> FloatArray:
+    """Largest envelope in a record of what begins at a frequency, (case, port, frequency) to (case, port)."""
+    found: FloatArray = np.sqrt(line.swings(some, first, derivative=order).max(axis=-1))
+    return found
 
 
 def _mean_swing(line: Line, first: int, order: int, some: ComplexArray) -> FloatArray:

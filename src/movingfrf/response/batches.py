@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cache, wraps
@@ -32,6 +32,11 @@ class Batch:
     def frequencies(self, entries: int) -> int:
         """Frequencies to solve at a time with so many entries of a matrix at each."""
         return max(min(self.most, self.entries // entries), self.fewest)
+
+    def some(self, count: int, entries: int) -> Iterator[slice]:
+        """Go through so many frequencies, as many at a time."""
+        step = self.frequencies(entries)
+        yield from (slice(first, first + step) for first in range(0, count, step))
 
 
 BATCH = Batch()

@@ -6,6 +6,7 @@ road nothing is left.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -39,16 +40,22 @@ class Share(NamedTuple):
     """What is looked at of every output, band by band."""
 
     gain: FloatArray  # (port, output, band) magnitude per unit of what drives that port
-    energy: FloatArray  # (case, output, band) upper bound of the energy that it carries
+    beyond: FloatArray  # (case, output, band + 1) upper bound of its energy from the beginning of each band on
 
-    def between(self, starts: IntArray, first: int, end: int) -> FloatArray:
-        """Energy of the bands that begin from frequency number `first` on, before `end`; shape (case, output)."""
-        return self.energy[:, :, (starts >= first) & (starts < end)].sum(axis=2)
+    @classmethod
+    def of(cls, gain: FloatArray, energy: FloatArray) -> Share:
+        """Add up energies, (case, output, band), from the end on."""
+        beyond = np.zeros((*energy.shape[:2], energy.shape[2] + 1))
+        np.cumsum(energy[:, :, ::-1], axis=2, out=beyond[:, :, -2::-1])
+        return cls(gain, beyond)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Influence:
     """Outputs, and what the compliance of the guideway adds to them, in bands.
+
+    Energies are shares of that of the output, contacts taken as independent; every output counts for a share of the
+    largest of its kind at least.
 
     Parameters
     ----------
@@ -58,10 +65,8 @@ class Influence:
         What the guideway adds.
     whole : Share
         All of the output.
-    total : ndarray, shape (case, output)
-        Energy of the whole output, contacts taken as independent.
-    least : ndarray, shape (case, output)
-        Energy that every output counts for at least: a share of the largest of its kind.
+    size : ndarray, shape (case, output)
+        Energy of which energies are shares.
     lines : int
         Number of the frequencies.
     """
@@ -69,26 +74,40 @@ class Influence:
     starts: IntArray
     added: Share
     whole: Share
-    total: FloatArray
-    least: FloatArray
+    size: FloatArray
     lines: int
-
-    @property
-    def size(self) -> FloatArray:
-        """Energy against which a part of an output counts, shape (case, output)."""
-        return np.maximum(self.total, self.least)
 
     def error(self, kept: int, end: int) -> float:
         """Greatest relative change of any output if the road is rigid from frequency number `kept` to `end`."""
-        return float(np.sqrt(quotient(self.added.between(self.starts, kept, end), self.size).max(initial=0.0)))
+        return float(np.sqrt(self._between(self.added, kept, end).max(initial=0.0)))
 
     def content(self, first: int) -> float:
         """Greatest share of any output, relative L2, that lies from frequency number `first` on."""
-        return float(self.shares(first, self.lines).max(initial=0.0))
+        return float(np.sqrt(self._between(self.whole, first, self.lines).max(initial=0.0)))
 
     def shares(self, first: int, end: int) -> FloatArray:
         """Greatest share of each output, relative L2, from frequency number `first` to `end`; shape (output,)."""
-        return np.sqrt(quotient(self.whole.between(self.starts, first, end), self.size).max(axis=0))
+        return np.sqrt(self._between(self.whole, first, end).max(axis=0))
+
+    def _between(self, share: Share, first: int, end: int) -> FloatArray:
+        """Energy of the bands that begin from frequency number `first` on, before `end`; shape (case, output)."""
+        begins, ends = np.searchsorted(self.starts, [first, end]).tolist()
+        return share.beyond[:, :, begins] - share.beyond[:, :, max(begins, ends)]
+
+    @property
+    def middles(self) -> IntArray:
+        """Number of the frequency in the middle of each band."""
+        return middles(self.starts, self.lines)
+
+    def at_most(self, energy: FloatArray) -> float:
+        """Bound the share of any output, relative L2, of what drives the ports with so much energy, (port,)."""
+        most = np.sqrt(energy) @ self.whole.gain.max(axis=2)
+        return float(np.sqrt(quotient(np.broadcast_to(most**2, self.size.shape), self.size).max(initial=0.0)))
+
+    def weighted(self, share: FloatArray) -> float:
+        """Share of any output, relative L2, of a share of each band, shape (band,)."""
+        beyond = self.whole.beyond
+        return float(np.sqrt(((beyond[:, :, :-1] - beyond[:, :, 1:]) @ np.square(share)).max(initial=0.0)))
 
     def negligible_from(self, share: Share, allowed: float, energy: FloatArray) -> int:
         """Find the lowest frequency from which on a share of the outputs is negligible.
@@ -107,30 +126,34 @@ class Influence:
         int
             Number of the frequency; the number of frequencies if there is no such frequency.
         """
-        limit, total = allowed**2, self.size[:, :, None]
-        beyond = np.cumsum(share.energy[:, :, ::-1], axis=2)[:, :, ::-1]
-        harmful_bands = np.flatnonzero((quotient(beyond, total) > limit).any(axis=(0, 1)))
-        if not harmful_bands.size:
+        limit, count = allowed**2, len(self.starts)
+        harmful = np.flatnonzero((share.beyond > limit).any(axis=(0, 1)))
+        if not harmful.size:
             return 0
-        band = int(harmful_bands[-1]) + 1
+        band = int(harmful[-1]) + 1
         # Within the last harmful band, frequency by frequency.
         first = int(self.starts[band - 1])
-        last = int(self.starts[band]) if band < len(self.starts) else energy.shape[-1]
+        last = int(self.starts[band]) if band < count else energy.shape[-1]
         cases = np.sqrt(energy[..., first:last]).reshape(-1, energy.shape[-2], last - first)
-        each = (share.gain[:, :, band - 1].T @ cases) ** 2
-        tail = np.cumsum(each[:, :, ::-1], axis=2)[:, :, ::-1]
-        if band < len(self.starts):
-            tail += beyond[:, :, band, None]
-        harmful = np.flatnonzero((quotient(tail, total) > limit).any(axis=(0, 1)))
+        each = quotient((share.gain[:, :, band - 1].T @ cases) ** 2, self.size[:, :, None])
+        tail = np.cumsum(each[:, :, ::-1], axis=2)[:, :, ::-1] + share.beyond[:, :, band, None]
+        harmful = np.flatnonzero((tail > limit).any(axis=(0, 1)))
         return int(first + harmful[-1] + 1) if harmful.size else first
 
 
 def _bands(line: Line, truncation: float | None) -> IntArray:
     """Give the number of the first frequency of each band; one band begins beyond a stated truncation [Hz]."""
-    edges = np.geomspace(1, line.size, TRUNCATION.bands + 1).astype(int)
+    edges = np.exp(np.arange(TRUNCATION.bands) * (math.log(line.size) / TRUNCATION.bands)).astype(int)
     beyond = min(Truncation.stated(truncation).harmonics(line.period, line.size), line.size - 1)
-    starts = np.unique(np.r_[0, edges, beyond])
-    return starts[starts < line.size]
+    starts = np.append(edges, [0, beyond])
+    starts.sort()
+    return starts[np.append(True, starts[1:] > starts[:-1])]
+
+
+def middles(starts: IntArray, lines: int) -> IntArray:
+    """Give the number of the frequency in the middle of each band, of so many frequencies."""
+    ends = np.append(starts[1:], lines)
+    return (starts + ends - 1) // 2
 
 
 def influence(system: Sized, line: Line, energy: FloatArray, truncation: float | None, alike: float) -> Influence:
@@ -157,37 +180,28 @@ def influence(system: Sized, line: Line, energy: FloatArray, truncation: float |
         Per band and output.
     """
     starts = _bands(line, truncation)
-    omega = line.omega((starts + np.r_[starts[1:], line.size] - 1) // 2)
-    batch = BATCH.frequencies(system.ports**2)
+    omega = line.omega(middles(starts, line.size))
     cases = energy.reshape(-1, *energy.shape[-2:])
     power = np.add.reduceat(cases, starts, axis=2)
-    shares: list[Share] = []
-    total, first = np.zeros(0), 0
-    for some in np.split(omega, range(batch, omega.size, batch)):
-        here = slice(first, first + some.size)
-        gains = system.per_unit(some)
-        if not shares:
-            # Gains of many contacts are many; half of the digits tell what is negligible.
-            ports, outputs, _ = gains[0].shape
-            shape = len(cases), outputs, omega.size
-            shares = [Share(np.empty((ports, *shape[1:]), np.float32), np.empty(shape)) for _ in gains]
-            total = np.zeros(shape[:2])
-        for share, gain in zip(shares, gains, strict=True):
-            share.gain[..., here] = gain
-            share.energy[..., here] = np.einsum("cob,ncb->nob", gain, np.sqrt(power[..., here])) ** 2
-        total += np.einsum("cob,cob,ncb->no", gains[-1], gains[-1], power[..., here])
-        first += some.size
-    ends = np.cumsum(system.kinds)
-    kinds = np.split(total, ends[:-1], axis=1)
-    least = [np.broadcast_to(kind.max(axis=1, initial=0.0, keepdims=True), kind.shape) for kind in kinds]
-    return Influence(
-        starts=starts,
-        added=shares[0],
-        whole=shares[1],
-        total=total,
-        least=alike**2 * np.concatenate(least, axis=1),
-        lines=line.size,
+    amplitude = np.sqrt(power)
+    # Gains of many contacts are many; half of the digits tell what is negligible.
+    outputs = sum(system.kinds)
+    gains = [np.empty((cases.shape[1], outputs, omega.size), np.float32) for _ in ("added", "whole")]
+    energies = [np.empty((len(cases), outputs, omega.size)) for _ in gains]
+    total = np.zeros((len(cases), outputs))
+    for here in BATCH.some(omega.size, system.ports**2):
+        found = system.per_unit(omega[here])
+        for gain, each, carried in zip(gains, found, energies, strict=True):
+            gain[..., here] = each
+            np.square(np.einsum("cob,ncb->nob", each, amplitude[..., here]), out=carried[..., here])
+        total += np.einsum("cob,ncb->no", np.square(found[-1]), power[..., here])
+    begins = np.cumsum((0, *system.kinds[:-1]))
+    least = np.maximum.reduceat(total, begins, axis=1)
+    size = np.maximum(total, alike**2 * np.repeat(least, system.kinds, axis=1))
+    added, whole = (
+        Share.of(gain, quotient(carried, size[:, :, None])) for gain, carried in zip(gains, energies, strict=True)
     )
+    return Influence(starts=starts, added=added, whole=whole, size=size, lines=line.size)
 
 
 def quotient(part: FloatArray, whole: FloatArray) -> FloatArray:

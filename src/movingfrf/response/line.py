@@ -43,6 +43,8 @@ class Transform:
     noise: float = 10.0  # [3 to 30]
     # Share of a frequency over which what lies above it fades in.
     fading_in: float = 0.1  # [0.05 to 0.2]
+    # An envelope is followed in so many instants per frequency.
+    follows: float = 1.3  # [1.2 to 3]
     least: int = 16  # steps of padding [8 to 64]
     # Share of the padding within which a record fades out after its end; the rest is for the response to die away.
     fades: float = 0.25  # [0.15 to 0.4]
@@ -433,14 +435,14 @@ class Line(Remembering):
         above = spectra * self.from_on(first, last)[first:] if fading_in else spectra
         if derivative:
             above = above * (1j * self.omega(slice(first, last))) ** derivative
-        # Shifted down to zero frequency, twice as many samples as there are frequencies follow it.
-        samples = int(scipy.fft.next_fast_len(max(2 * above.shape[-1], 16)))
+        # Shifted down to zero frequency, not many more samples than there are frequencies follow it.
+        samples = int(scipy.fft.next_fast_len(max(int(TRANSFORM.follows * above.shape[-1]), 16)))
         swinging = scipy.fft.ifft(above, samples)
         instants = np.arange(samples) * (self.period / samples)
         begin, end = np.searchsorted(instants, [self.time_step, self.duration]).tolist()
         within = slice(begin, max(end, begin + 1))
         size: FloatArray = squared(swinging[..., within])
-        size *= np.exp(2.0 * self.decay * instants[within]) * (2 * samples / self.period) ** 2
+        size *= np.exp(2.0 * self.decay * instants[within] + 2.0 * math.log(2 * samples / self.period))
         return size
 
 

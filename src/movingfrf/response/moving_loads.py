@@ -17,7 +17,7 @@ from movingfrf.guideways.guideway import Guideway, findings_of, require_guideway
 from movingfrf.response.accuracy import hidden
 from movingfrf.response.batches import unthreaded
 from movingfrf.response.line import TRANSFORM, Given, Line, require_record, together
-from movingfrf.response.sampling import SAMPLING, Excited, excited
+from movingfrf.response.sampling import SAMPLING, Driving, Excited, excited
 from movingfrf.response.solve import solve
 from movingfrf.response.system import Prescribed
 from movingfrf.response.truncation import Truncation
@@ -167,7 +167,7 @@ def carried(
     progress("sampling", 0.0)
     # What changes sooner than the finest steps tell counts as abrupt.
     step = min(time_step, max(forces.finest, SAMPLING.loads.per_station * line.period / SAMPLING.loads.most))
-    driven_by = excited(system, forces.given, line, step, truncation=np.inf, wanted=SAMPLING.loads)
+    driven_by = excited(system, Driving(forces.given, step), line, truncation=np.inf, wanted=SAMPLING.loads)
     yielding = solve(system, driven_by.omega, driven_by.spectra, progress=progress).deflection
     progress("histories", 0.0)
     deflection, wrapped = _histories(driven_by, yielding)

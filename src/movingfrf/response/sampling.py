@@ -15,6 +15,7 @@ import numpy as np
 import scipy.fft
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
+from movingfrf._basics.differences import Differences
 from movingfrf._basics.smooth import smoothest_step
 from movingfrf.response.influence import Influence, Sized, influence
 from movingfrf.response.line import TRANSFORM, Given, Line
@@ -28,6 +29,8 @@ class Wanted:
     # Steps from station to station of a profile at first, or from sample to sample; twice as many, and so on, until
     # they are enough.
     per_station: float = 2.0  # [2 to 8]
+    # So many stations a step instead, where next to nothing is in waves shorter than two such steps.
+    stations: tuple[float, ...] = (8.0, 4.0, 2.0)  # [1 to 16, descending: time only]
     # What of any output may lie in the highest quarter of the frequencies, and beyond what is solved, relative L2.
     negligible: float  # [1e-6 to 3e-4]
     # The same beyond what is solved, where nothing changes abruptly.
@@ -50,6 +53,10 @@ class Sampling:
     many: int = 2**20  # [2**17 to 2**22: time only]
     costly: float = 3.0  # [1 to 5]
     less: float = 2.0  # [1 to 3]
+    # A road of which no more than this share is in waves shorter than two coarse steps is sampled in these, unless
+    # that is more than this share of what is negligible of some output.
+    next_to_nothing: float = 1e-7  # [1e-9 to 1e-5: time only]
+    hidden: float = 0.3  # [0.03 to 1]
     # Where what a road leaves out turns out to be more than this share of the largest value of a channel, less is
     # negligible, and it is solved again.
     tolerated: float = 1.5e-4  # [5e-5 to 3e-4]
@@ -73,6 +80,9 @@ class Sampling:
     # sooner what is left out has died away.
     fades: float = 0.1  # [0.05 to 0.2]
     fades_abrupt: float = 1.0  # [0.5 to 2]
+    # A response that the steps of its record do not show is shown in so many steps to half a period of its highest
+    # frequency.
+    shown: float = 3.0  # [2 to 8]
     # For figures a channel is as large as this share of the largest of its kind at least: one that hardly moves is
     # no matter. From the other one on, what a stated truncation changes is computed rather than estimated.
     smallest: float = 1e-3  # [a convention]
@@ -86,6 +96,36 @@ class Sampling:
 
 
 SAMPLING = Sampling()
+
+
+class Driving(NamedTuple):
+    """What drives a system: as it is given, and from what on."""
+
+    given: Callable[[Line], Given]  # at the instants of any line
+    step: float  # from station to station of the profile, or from sample to sample of the forces, as a rule [s]
+    finest: float | None = None  # the same where they are closest [s]; None: it is the same everywhere
+    # How little of it may be in its short periods; None if that is not known.
+    differences: Differences | None = None
+
+    def points(self, period: float, wanted: Wanted) -> float:
+        """Say in how many steps per period [s] sampling begins: no finer than is needed as far as one knows."""
+        every = period / self.step
+        if self.differences is not None:
+            for stations in wanted.stations:
+                least = self.differences.shorter(2 * stations).max(initial=0.0)
+                if least <= SAMPLING.next_to_nothing**2 * self.differences.whole:
+                    return every / stations
+        return wanted.per_station * every
+
+    def hides(self, points: float, period: float, found: Influence) -> float:
+        """Bound what sampling in so many steps per period [s] hides of any output, relative L2."""
+        stations = period / (points * self.step)
+        if self.differences is None or stations < 1.0:
+            return 0.0
+        # A spline through the stations has images of its waves, which fall back onto these, or near them.
+        turns = 2 * np.pi * self.step / period * found.middles
+        images = found.weighted((turns / (2 * np.pi - turns)) ** 4 + (turns / (2 * np.pi + turns)) ** 4)
+        return found.at_most(0.5 * period * self.differences.shorter(2 * stations)) + images
 
 
 class Excited(NamedTuple):
@@ -117,11 +157,9 @@ class Excited(NamedTuple):
 
 def excited(
     system: Sized,
-    given: Callable[[Line], Given],
+    driving: Driving,
     line: Line,
-    step: float,
     *,
-    finest: float | None = None,
     truncation: float | None,
     solved_step: float | None = None,
     wanted: Wanted = SAMPLING.road,
@@ -133,14 +171,10 @@ def excited(
     ----------
     system : System or Prescribed
         What is driven.
-    given : callable
-        What drives it, at the instants of any line.
+    driving : Driving
+        What drives it.
     line : Line
         The record.
-    step : float
-        From station to station of the profile, or from sample to sample of the forces, as a rule [s].
-    finest : float, optional
-        The same where they are closest; None: it is the same everywhere.
     truncation : float, optional
         Frequency beyond which the road counts as rigid [Hz]; None: it is found.
     solved_step : float, optional
@@ -160,7 +194,8 @@ def excited(
     ValueError
         If memory would not hold it.
     """
-    points = max(wanted.per_station * line.period / step, SAMPLING.least) if after is None else after.points
+    points = driving.points(line.period, wanted) if after is None else after.points
+    points = max(points, SAMPLING.least)
     stated = None if solved_step is None else int(np.ceil(0.5 * line.period / solved_step)) + 1
     if stated is not None:
         points = max(points, 2.0 * stated)
@@ -171,29 +206,32 @@ def excited(
     energies = (np.inf, np.inf, np.inf) if after is None else after.energies[:-1]
     while True:
         line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
-        driving = given(line)
-        parts, energy = line.looked_at(driving)
+        given = driving.given(line)
+        parts, energy = line.looked_at(given)
         found = influence(system, line, energy, truncation, wanted.alike) if after is None else after.found
+        if driving.hides(points, line.period, found) > SAMPLING.hidden * wanted.negligible:
+            points, after = wanted.per_station * line.period / driving.step, None
+            continue
         highest = found.content(int(SAMPLING.quarter * line.size))
         energies = (*energies, highest**2)
         # Beyond this frequency what an abrupt change adds has passed when the next sample is taken.
-        passed = int(SAMPLING.passed * line.period / (2 * np.pi * line.clear(driving)))
+        passed = int(SAMPLING.passed * line.period / (2 * np.pi * line.clear(given)))
         at_once = SAMPLING.at_once / np.sqrt(line.size)
-        ports = driving.values[..., 0].size
+        ports = given.values[..., 0].size
         relaxed = SAMPLING.costly if points * ports > SAMPLING.many else 1.0
         negligible = relaxed * wanted.negligible
         enough = highest <= negligible and (passed <= SAMPLING.quarter * line.size or highest <= at_once)
         if enough or stated is not None or 2 * points * ports > wanted.most:
             break
         # Before the closest stations are told apart what they hold does not fall.
-        apart = points > 8 * wanted.per_station * line.period / (step if finest is None else finest)
+        apart = points > 8 * wanted.per_station * line.period / (driving.finest or driving.step)
         falls = not apart or energies[-1] <= SAMPLING.falling * energies[-4]
         if not falls and not (wanted.told and _stiffens(system, line, found)):
             break
         points, after = 2 * points, None
-    fades = SAMPLING.fades_abrupt if driving.abrupt else SAMPLING.fades
+    fades = SAMPLING.fades_abrupt if given.abrupt else SAMPLING.fades
     if stated is None:
-        limit = negligible if driving.abrupt else relaxed * wanted.smooth
+        limit = negligible if given.abrupt else relaxed * wanted.smooth
         ends = found.negligible_from(found.whole, limit, energy)
         if passed > ends:
             ends = min(passed, found.negligible_from(found.whole, at_once, energy))
@@ -213,7 +251,7 @@ def excited(
         line=line,
         omega=line.omega(slice(count)),
         spectra=parts[..., :count] * fade,
-        begins=driving.begins,
+        begins=given.begins,
         truncation=replace(cut, error=found.error(cut.harmonics(line.period, line.size), count)),
         fade=fade,
         finest=stated is not None or not enough,

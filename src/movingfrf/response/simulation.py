@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +14,7 @@ from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.accuracy import hidden, past_the_end, truncated, unresolved
 from movingfrf.response.batches import unthreaded
 from movingfrf.response.line import Given, Line, require_record
-from movingfrf.response.sampling import SAMPLING, Excited, excited
+from movingfrf.response.sampling import SAMPLING, Driving, Excited, excited
 from movingfrf.response.solve import solve
 from movingfrf.response.survey import SteadyState, survey
 from movingfrf.response.system import CoupledHistories, Response, System
@@ -27,20 +27,6 @@ from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Fading:
-    """What tunes how a road fades out past the end of a record; in brackets, between what each number is safe."""
-
-    # The road fades out in so many times the ratio of its last level to its typical rate, that at so many instants,
-    # and in so many times the duration at most.
-    slower: float = 2.0  # [1 to 5]
-    durations: float = 2.0  # [1 to 16]
-    looks: int = 1000  # [200 to 10 000]
-
-
-FADING = Fading()
 
 
 def simulate(
@@ -190,8 +176,8 @@ def driven(
         ],
         journey.time_step,
     )
-    # What is measured, and whether contact is kept, is taken from the response in the steps in which it was solved.
-    finer = int(np.ceil(journey.time_step / driven_by.step)) if not_shown else 1
+    # What is measured, and whether contact is kept, is taken from the response as it was solved.
+    finer = int(np.ceil(SAMPLING.shown * journey.time_step / driven_by.step)) if not_shown else 1
     fine = response.histories(driven_by.line, finer) if not_shown else histories
     found = [
         *find.contact_lost(
@@ -261,17 +247,17 @@ def _solved(
     system: System, excitation: Excitation, journey: Journey, progress: Progress
 ) -> tuple[Excited, Response, CoupledHistories, float]:
     """Solve, for more where what is left out matters to a channel's largest value; and say how much it does."""
-    line, wanted = line_of(journey, system.vehicle, fading=_fading(excitation, journey)), SAMPLING.road
+    line = line_of(journey, system.vehicle, fading=excitation.fading(journey.distance) / journey.speed)
+    wanted = SAMPLING.road
     before: Excited | None = None
+    driving = _driving(excitation, journey)
     for _ in range(SAMPLING.rounds):
         progress("sampling", 0.0)
         # One part, one case.
         driven_by = excited(
             system,
-            lambda line: Given(excitation.elevation(journey.speed * line.instants)),
+            driving,
             line,
-            excitation.station / journey.speed,
-            finest=excitation.closest / journey.speed,
             truncation=journey.truncation,
             solved_step=journey.solved_step,
             wanted=wanted,
@@ -292,18 +278,23 @@ def _solved(
     return driven_by, response, histories, left_out
 
 
+def _driving(excitation: Excitation, journey: Journey) -> Driving:
+    """Tell of a road in time."""
+    speed, differences = journey.speed, excitation.differences(journey.distance)
+    if differences is not None:
+        differences = differences._replace(energy=differences.energy / speed, whole=differences.whole / speed)
+    return Driving(
+        given=lambda line: Given(excitation.elevation(speed * line.instants)),
+        step=excitation.station / speed,
+        finest=excitation.closest / speed,
+        differences=differences,
+    )
+
+
 def _jump(seen: FloatArray, vehicle: Vehicle) -> float:
     """Largest step at t = 0 that a contact with a dashpot, or a rigid one, meets [m]."""
     hard = (vehicle.dashpots > 0) | np.isinf(vehicle.springs)
     return float(np.abs(seen[:, 0] * hard).max())
-
-
-def _fading(excitation: Excitation, journey: Journey) -> float:
-    """Time in which the road may fade out past the end of the record [s]: no faster than it rises as a rule."""
-    travelled = np.linspace(0.0, journey.distance, FADING.looks)
-    rate = np.sqrt(np.square(excitation.rate(travelled, journey.speed)).mean())
-    level = np.abs(excitation.elevation(travelled[-1:])).max()
-    return float(min(FADING.slower * level, FADING.durations * journey.duration * rate) / (rate or 1.0))
 
 
 def _guessed(

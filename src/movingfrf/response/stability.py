@@ -161,6 +161,8 @@ def _turned(system: System, along_axis: Tables | CarByCar) -> float:
         factors = np.hstack([_factors(at_first, at_middle), _factors(at_middle, at_last)])
         rough = (np.abs(factors - 1) > CONTOUR.largest_change).any(axis=1)
         turned += np.angle(factors[~rough]).sum()
+        if not rough.any():
+            return float(turned)
         first, last = np.r_[first[rough], middle[rough]], np.r_[middle[rough], last[rough]]
         at_first, at_last = np.r_[at_first[rough], at_middle[rough]], np.r_[at_middle[rough], at_last[rough]]
         if not 0 < first.size < CONTOUR.most_intervals:

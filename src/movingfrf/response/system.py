@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
-from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.remembered import Remembering, recalled, remembered
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import Seen, waves
@@ -127,7 +127,7 @@ class System(Remembering):
     @remembered
     def train(self) -> Order | None:
         """The vehicle from car to car, where it is solved so; None where all contacts are solved at once."""
-        order = in_order(self.vehicle)
+        order = recalled(self.vehicle, "order along the road", lambda: in_order(self.vehicle))
         long = len(order.blocks) > 1 and self.ports > BATCH.at_once
         return order if long and isinstance(self.guideway, Track) else None
 

@@ -12,30 +12,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.differences import Differences
 from movingfrf._basics.enveloping import enveloping
-from movingfrf._basics.smooth import memory, onward, smooth_step, smooth_step_slope
-from movingfrf._basics.spline import Piecewise, cubic
+from movingfrf._basics.smooth import smooth_step, smooth_step_slope
+from movingfrf._basics.spline import Piecewise
 from movingfrf._basics.wording import count, told_apart
+from movingfrf.roughness.along import GOING_ON, Along
 from movingfrf.roughness.profile import SLACK, Profile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Seeing:
-    """What tunes how contacts see a road; in brackets, between what each number is safe."""
+class Setting:
+    """What tunes how a road sets in; in brackets, between what each number is safe."""
 
-    # Samples that are averaged about one level, on the way of which a road does not climb far; and last stations,
-    # which tell how a profile goes on.
-    together: int = 4096  # [256 to 16 384]
-    # Past its end a profile goes on over so many of its last steps at least, over so many times its length at most,
-    # in so many cubic pieces.
-    fewest: int = 4  # [2 to 16]
-    longest: float = 1.0  # [0.1 to 2]
-    pieces: int = 64  # [32 to 256]
     # The grade is that of so many metres from the start of the hindmost contact on, as far as the profile reaches:
     # the median of the slopes over half of it, at so many places. What is less than `least`, more on a shorter
     # profile, or than so many times the median deviation of those slopes, is roughness.
@@ -45,13 +38,15 @@ class Seeing:
     deviations: float = 2.0  # [a convention]
     # The road sets out over so many metres.
     sets_out: float = 15.0  # [m; a convention]
-    # How well the road is guessed past the end of a profile is told from so many guesses before it, which lie so
-    # many times the length of a guess apart.
-    guesses: int = 15  # [7 to 63]
-    apart: float = 4.0  # [1 to 10]
+    # It fades out in so many times the ratio of its last level to its root mean square slope, and in so many times
+    # the way at most.
+    slower: float = 2.0  # [1 to 5]
+    ways: float = 2.0  # [1 to 16]
+    # Contacts are looked at together up to so many places in all.
+    together: int = 2**18  # [2**12 to 2**22: time and memory only]
 
 
-SEEING = Seeing()
+SETTING = Setting()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -83,116 +78,6 @@ class Touch:
     def waves(self, wavenumber: FloatArray) -> ComplexArray:
         """Give what each contact sees of a wave e^{iκx}, the reference point at x = 0; shape (contact, wave)."""
         return self.shares(wavenumber) * np.exp(1j * np.outer(self.positions, wavenumber))
-
-
-class Along(NamedTuple):
-    """One path about its datum and a grade, straight before its beginning, smooth past its end."""
-
-    spline: Piecewise  # elevation [m]
-    datum: float  # [m]
-    datum_at: float  # where that is counted from [m]
-    grade: float  # [m/m]
-    onward: Piecewise  # how it goes on past its end, counted from there [m]
-    fades: float  # over how many metres slope and curvature fade from there on
-
-    @classmethod
-    def of(cls, spline: Piecewise, datum_at: float, grade: float) -> Along:
-        """Prepare one path of a profile."""
-        datum, stations = float(spline(datum_at)), spline.x
-        # Past the end slope and curvature fade, over a length that adds no frequencies.
-        end, slope, curvature = (float(spline(stations[-1], order)) for order in range(3))
-        end, slope = end - datum - grade * (float(stations[-1]) - datum_at), slope - grade
-        extent = float(stations[-1] - stations[0])
-        latest = spline.c[:, -SEEING.together :]
-        length = float(memory(latest[2] - grade, 2.0 * latest[1]))
-        length = min(max(length, SEEING.fewest * extent / spline.c.shape[1]), SEEING.longest * extent)
-        after = np.linspace(0.0, length, SEEING.pieces + 1)
-        fading = cubic(after, end + onward(after, slope, curvature, length), first=slope, last=0.0)
-        flat = np.zeros((4, 1))
-        flat[3] = end
-        goes_on = Piecewise(np.append(after, length + 1.0), np.hstack([fading.c, flat]))
-        return cls(spline, datum, datum_at, grade, goes_on, length)
-
-    @property
-    def ends(self) -> float:
-        """Where the profile ends [m]."""
-        return float(self.spline.x[-1])
-
-    def level(self, distance: FloatArray | float, order: int = 0) -> FloatArray:
-        """Elevation about datum and grade [m], or a derivative of it, within the profile or beyond."""
-        places = np.asarray(distance)
-        first, last = float(places.min()), float(places.max())
-        if first < self.spline.x[0] or last > self.ends:
-            return self.between(first, last)(places, order)
-        found = self.spline(places, order)
-        if order == 0:
-            found -= self.datum
-            if self.grade:
-                found -= self.grade * (places - self.datum_at)
-        elif order == 1:
-            found -= self.grade
-        return found
-
-    def between(self, first: float, last: float) -> Piecewise:
-        """Elevation about datum and grade from one place to another [m], within the profile or beyond."""
-        stations, count = self.spline.x, self.spline.c.shape[1]
-        begin, end = np.searchsorted(stations, [first, last], side="right").tolist()
-        begin, end = min(max(begin - 1, 0), count - 1), min(max(end, 1), count)
-        places, pieces = stations[begin : end + 1], self.spline.c[:, begin:end].copy()
-        pieces[3] -= self.datum + self.grade * (places[:-1] - self.datum_at)
-        pieces[2] -= self.grade
-        if first < stations[0]:
-            straight = np.zeros((4, 1))
-            straight[2], straight[3] = pieces[2, 0], pieces[3, 0] - pieces[2, 0]
-            places, pieces = np.append(places[0] - 1.0, places), np.hstack([straight, pieces])
-        if last > stations[-1]:
-            places = np.append(places, stations[-1] + self.onward.x[1:])
-            pieces = np.hstack([pieces, self.onward.c])
-        return Piecewise(places, pieces)
-
-    def seen(self, distance: FloatArray, footprint: float, cams: float, derivative: int = 0) -> FloatArray:
-        """Average elevation about the datum [m], or its slope [m/m], at ascending distances [m]."""
-        if not footprint and not cams:
-            return self.level(distance, derivative) if distance.size else distance
-        found = np.empty_like(distance)
-        for first in range(0, distance.size, SEEING.together):
-            some = slice(first, first + SEEING.together)
-            found[some] = self._averaged(distance[some], footprint, cams, derivative)
-        return found
-
-    def doubt(self, reach: float) -> Piecewise:
-        """How far guesses past the end of a profile are off, over the distance from there [m].
-
-        Guesses past places within the profile are off from what is there; an axis of guesses comes first.
-        """
-        last = self.ends - reach
-        span = max(min(SEEING.apart * SEEING.guesses * reach, last - float(self.spline.x[0])), 0.0)
-        here = last - span * np.linspace(0.0, 1.0, SEEING.guesses)[:, None]
-        beyond = np.linspace(0.0, reach, SEEING.pieces + 1)
-        guessed = onward(beyond, self.level(here, 1), self.level(here, 2), self.fades)
-        off = guessed - (self.level(here + beyond) - self.level(here))
-        return cubic(beyond, off, first=0.0)
-
-    def _averaged(self, distance: FloatArray, footprint: float, cams: float, derivative: int) -> FloatArray:
-        """Average a stretch of it, counted from where that begins and about the level there.
-
-        The area under a road grows with the road's length and climb, and a difference of two such areas would have
-        lost the digits that roughness needs.
-        """
-        begun, reach = float(distance[0]), 0.5 * (footprint + cams)
-        around = self.between(begun - reach, float(distance[-1]) + reach)
-        height = float(around(begun))
-        around.c[3] -= height
-        here = Piecewise(around.x - begun, around.c)
-        # Where it rises, the level is the integral of the slope.
-        integral = here if derivative else here.antiderivative()
-        at = (distance - begun) + 0.5 * cams * np.array([[-1.0], [1.0]] if cams else [[0.0]])
-        half = 0.5 * footprint
-        if footprint:
-            found: FloatArray = ((integral(at + half) - integral(at - half)) / footprint).mean(axis=0)
-        else:
-            found = here(at, derivative).mean(axis=0)
-        return found if derivative else found + height
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -261,23 +146,67 @@ class Excitation:
             Elevation [m], positive up.
         """
         seen = np.empty((self.touch.positions.size, travelled.size))
-        for row, along, distance, touched, setting_in in self._each(travelled):
-            seen[row] = along.seen(distance, *touched)
-            seen[row, : setting_in.size] *= smooth_step(setting_in)
+        for rows, along, distance, touched, setting_in in self._alike(travelled):
+            found = along.seen(distance, *touched)
+            found[:, : setting_in.shape[1]] *= smooth_step(setting_in)
+            seen[rows] = found
         return seen
 
     def rate(self, travelled: FloatArray, speed: float) -> FloatArray:
         """Rate of change of the elevation that each contact sees, as for `elevation` [m/s]."""
         rate = np.empty((self.touch.positions.size, travelled.size))
-        for row, along, distance, touched, setting_in in self._each(travelled):
-            rising = along.seen(distance, *touched, derivative=1)
-            blending = setting_in.size
-            rising[:blending] *= smooth_step(setting_in)
+        for rows, along, distance, touched, setting_in in self._alike(travelled):
+            rising, blending = along.seen(distance, *touched, derivative=1), setting_in.shape[1]
             if blending:
-                early = along.seen(distance[:blending], *touched)
-                rising[:blending] += early * smooth_step_slope(setting_in) / self.blend
-            np.multiply(rising, speed, out=rate[row])
+                rising[:, :blending] *= smooth_step(setting_in)
+                early = along.seen(distance[:, :blending], *touched)
+                rising[:, :blending] += early * smooth_step_slope(setting_in) / self.blend
+            rate[rows] = rising * speed
         return rate
+
+    def fading(self, travelled: float) -> float:
+        """Way in which the road may fade out past the end of a journey [m]: no faster than it rises as a rule.
+
+        Parameters
+        ----------
+        travelled : float
+            Length of the journey [m].
+
+        Returns
+        -------
+        float
+            From the greatest elevation at the end and the root mean square slope on the steepest way.
+        """
+        begins = zip(self.touch.paths, (self.start + self.touch.positions).tolist(), strict=True)
+        steep = max(self.along[path].steepness(first, first + travelled) for path, first in begins)
+        level = float(np.abs(self.elevation(np.array([travelled]))).max())
+        return min(SETTING.slower * level, SETTING.ways * travelled * steep) / (steep or 1.0)
+
+    def differences(self, travelled: float) -> Differences | None:
+        """Tell how little of the road may be in its short waves, however finely it is sampled.
+
+        Parameters
+        ----------
+        travelled : float
+            How far the contacts travel [m].
+
+        Returns
+        -------
+        Differences or None
+            From station to station, of what each contact meets on the way [m³]; None where stations are uneven.
+        """
+        touch, energy, whole = self.touch, list[float](), 0.0
+        reach = 0.5 * (touch.footprints + touch.cams)
+        for path, first, last in zip(
+            touch.paths, touch.positions - reach, touch.positions + reach + travelled, strict=True
+        ):
+            along = self.along[path]
+            if along.rough is None:
+                return None
+            begins = self.start - float(along.spline.x[0])
+            energy.append(along.rough.over(begins + first, begins + last))
+            whole = max(whole, along.rough.variance * travelled)
+        return Differences(GOING_ON.difference, np.array(energy), whole)
 
     def doubt(self, travelled: FloatArray) -> FloatArray:
         """How far the elevation under each contact may be off where it reaches past the end of a profile.
@@ -292,27 +221,41 @@ class Excitation:
         ndarray, shape (guess, contact, time)
             What several guesses within the profile were off [m].
         """
-        doubt = np.zeros((SEEING.guesses, self.touch.positions.size, travelled.size))
-        for row, along, distance, (footprint, cams), _ in self._each(travelled):
+        doubt = np.zeros((GOING_ON.guesses, self.touch.positions.size, travelled.size))
+        for rows, along, distances, (footprint, cams), _ in self._alike(travelled):
             reach = 0.5 * (footprint + cams)
-            first = int(np.searchsorted(distance, along.ends - reach))
-            if reach and first < travelled.size:
-                off, past = along.doubt(reach), np.minimum(distance[first:] + reach - along.ends, reach)
-                touched = off.antiderivative()(past) / footprint if footprint else off(past)
-                doubt[:, row, first:] = touched / (2.0 if cams else 1.0)
+            for row, distance in zip(rows, distances, strict=True):
+                first = int(np.searchsorted(distance, along.ends - reach))
+                if reach and first < travelled.size:
+                    off, past = along.doubt(reach), np.minimum(distance[first:] + reach - along.ends, reach)
+                    touched = off.antiderivative()(past) / footprint if footprint else off(past)
+                    doubt[:, row, first:] = touched / (2.0 if cams else 1.0)
         return doubt
 
-    def _each(
+    def _alike(
         self, travelled: FloatArray
-    ) -> Iterator[tuple[int, Along, FloatArray, tuple[float, float], FloatArray]]:
-        """Go through the contacts: path, distances, what is touched, how far the profile has set in at first."""
+    ) -> Iterator[tuple[list[int], Along, FloatArray, tuple[float, float], FloatArray]]:
+        """Go through contacts that touch the same: which, path, distances, what, how far the profile has set in."""
         touch = self.touch
         foremost = self.start + touch.positions.max()
-        for row, (position, path) in enumerate(zip(touch.positions, touch.paths, strict=True)):
-            distance = travelled + (self.start + position)
-            blending = int(np.searchsorted(distance, foremost + self.blend)) if self.blend else 0
-            setting_in = (distance[:blending] - foremost) / self.blend if self.blend else distance[:0]
-            yield row, self.along[path], distance, (touch.footprints[row], touch.cams[row]), setting_in
+        alike: dict[tuple[int, float, float], list[int]] = {}
+        each = zip(touch.paths, touch.footprints.tolist(), touch.cams.tolist(), strict=True)
+        for row, what in enumerate(each):
+            alike.setdefault(what, []).append(row)
+        # As many at a time as memory hardly notices.
+        together = max(SETTING.together // max(travelled.size, 1), 1)
+        groups = [
+            (path, (footprint, cams), rows[first : first + together])
+            for (path, footprint, cams), rows in alike.items()
+            for first in range(0, len(rows), together)
+        ]
+        for path, touched, rows in groups:
+            begins = self.start + touch.positions[rows]
+            distance = travelled + begins[:, None]
+            over = foremost + self.blend - begins.min()
+            blending = int(np.searchsorted(travelled, over)) if self.blend else 0
+            setting_in = (distance[:, :blending] - foremost) / (self.blend or 1.0)
+            yield rows, self.along[path], distance, touched, setting_in
 
 
 def excite(profile: Profile, touch: Touch, *, start: float, distance: float, blend: float) -> Excitation:
@@ -350,14 +293,12 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
     column = {path: 0 if profile.same_across else path for path in touch.paths}
     splines = {path: profile.along(path) for path in set(column.values())}
     slope, counts = slope_of(list(splines.values()), hindmost)
-    ahead = min(foremost + SEEING.sets_out, float(profile.stations[-1])) - foremost
-    sets_out = float(np.mean([spline(foremost + ahead) - spline(foremost) for spline in splines.values()])) / ahead
+    ahead = min(foremost + SETTING.sets_out, float(profile.stations[-1])) - foremost
+    ends = np.array([foremost, foremost + ahead])
+    sets_out = float(np.mean([np.diff(spline(ends)) for spline in splines.values()])) / ahead
     grade = slope if blend and counts else 0.0
-    known = {path: Along.of(spline, foremost, grade) for path, spline in splines.items()}
-    stations = profile.stations
-    first, last = np.searchsorted(stations, [hindmost, foremost + distance]).tolist()
-    apart = np.diff(stations[max(first - 1, 0) : last + 1])
-    station = float(np.median(apart))
+    known = {path: Along.of(profile, path, foremost, grade) for path in splines}
+    station, closest = _apart(profile, hindmost, foremost + distance)
     reach = float((touch.positions + 0.5 * (touch.footprints + touch.cams)).max())
     return Excitation(
         touch=touch,
@@ -368,9 +309,21 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
         slope=slope,
         sets_out=sets_out,
         station=station,
-        closest=float(max(apart.min(), 1e-3 * station)),
-        guessed=max(start + distance + reach - float(stations[-1]), 0.0),
+        closest=closest,
+        guessed=max(start + distance + reach - float(profile.stations[-1]), 0.0),
     )
+
+
+def _apart(profile: Profile, first: float, last: float) -> tuple[float, float]:
+    """How far most stations lie apart on a journey, and the closest ones, no closer than a thousandth of it [m]."""
+    step = profile.even_step()
+    if step is not None:
+        return step, step
+    stations = profile.stations
+    begin, end = np.searchsorted(stations, [first, last]).tolist()
+    apart = np.diff(stations[max(begin - 1, 0) : end + 1])
+    station = float(np.median(apart))
+    return station, float(max(apart.min(), 1e-3 * station))
 
 
 def slope_of(paths: Sequence[Piecewise], first: float) -> tuple[float, bool]:
@@ -391,15 +344,15 @@ def slope_of(paths: Sequence[Piecewise], first: float) -> tuple[float, bool]:
     bool
         Whether it is a grade.
     """
-    length = min(SEEING.grade_over, min(float(spline.x[-1]) for spline in paths) - first)
-    from_here = first + np.linspace(0.0, 0.5 * length, SEEING.places)
+    length = min(SETTING.grade_over, min(float(spline.x[-1]) for spline in paths) - first)
+    from_here = first + np.linspace(0.0, 0.5 * length, SETTING.places)
     half = 0.5 * length
     slopes = np.array([(spline(from_here + half) - spline(from_here)) / half for spline in paths])
     slope = float(np.median(slopes))
     scatter = float(np.median(np.abs(slopes - slope)))
     # Long waves look like a grade to a short profile, all the more the shorter it is.
-    least = SEEING.least * (SEEING.grade_over / length) ** 2
-    return slope, abs(slope) > max(least, SEEING.deviations * scatter)
+    least = SETTING.least * (SETTING.grade_over / length) ** 2
+    return slope, abs(slope) > max(least, SETTING.deviations * scatter)
 
 
 def require_cover(profile: Profile, first: float, last: float, paths: Sequence[int]) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf._basics.door import mistaken
-from movingfrf._basics.remembered import Remembering, recalled
+from movingfrf._basics.remembered import Remembering, recalled, remembered
 from movingfrf._basics.spline import Piecewise, cubic
 from movingfrf._basics.values import Value, brief
 from movingfrf._basics.wording import told_apart
@@ -109,6 +109,12 @@ class Profile(Remembering, Value):
         return np.asarray(self.distance, float)
 
     @property
+    def remembers(self) -> bool:
+        """Whether its splines are kept: those of many stations, tens of kilometres, are made whenever asked for."""
+        many = 2**20  # [memory only]
+        return self.stations.size <= many
+
+    @property
     def paths(self) -> int:
         """Number of paths."""
         elevation = np.asarray(self.elevation)
@@ -120,6 +126,7 @@ class Profile(Remembering, Value):
         elevation = np.asarray(self.elevation, float)
         return elevation[:, None] if elevation.ndim == 1 else elevation
 
+    @remembered
     def even_step(self) -> float | None:
         """Distance between stations if it is the same throughout, but for the rounding of whatever wrote them.
 
@@ -229,9 +236,7 @@ class Profile(Remembering, Value):
             Callable with any array of distances [m] on the profile; gives elevations [m], or with a second argument
             a derivative of that order.
         """
-        # Of so many stations, tens of kilometres, it is made whenever it is asked for, and not kept [memory only].
-        many = 2**20
-        if self.stations.size > many:
+        if not self.remembers:
             return self._along(path)
         return recalled(self, f"along path {path}", lambda: self._along(path))
 
