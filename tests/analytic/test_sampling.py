@@ -145,7 +145,7 @@ def test_past_the_end_of_a_profile_a_footprint_is_a_guess():
     )
     figures, differences = [], []
     for seed in range(12):
-        road = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 5.0)), length=40.0, seed=seed)
+        road = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 5.0)), length=40.0, step=0.1, seed=seed)
         ends = road.stations <= 30.0 + 1e-9
         cut = mf.Profile(road.stations[ends], road.columns[ends, 0])
         travel = {"speed": 15.0, "duration": 2.0, "blend": 3.0}
@@ -368,3 +368,34 @@ def test_a_second_look_is_like_a_first_one(less):
     assert (after.line, after.truncation, after.left_out) == (afresh.line, afresh.truncation, afresh.left_out)
     for mine, others in ((after.spectra, afresh.spectra), (after.fade, afresh.fade), (after.beyond, afresh.beyond)):
         np.testing.assert_array_equal(mine, others)
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+@pytest.mark.parametrize("stations", [1.9, 2.0, 4.0, 8.0])
+def test_a_wave_that_coarse_steps_do_not_see_is_not_missed(stations):
+    """A smooth road is sampled coarser than its stations; with a short wave on it, of any length, it is not."""
+    smooth = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 3.0)), length=100.0, seed=2)
+    step, car = smooth.even_step(), mf.quarter_car(**QUARTER_TRUCK)
+    wave = 2e-6 * np.cos(2 * np.pi / stations * np.arange(smooth.stations.size) + 0.3)
+    rough = mf.Profile(smooth.stations, smooth.columns[:, 0] + wave)
+    travel = {"speed": 10.0, "duration": 6.0, "time_step": 1e-3}
+    coarse, fine = (mf.simulate(PAVEMENT, car, road, **travel) for road in (smooth, rough))
+    assert coarse.attrs["solved_step"] > 4 * step / 10.0
+    assert fine.attrs["solved_step"] < 0.5 * stations * step / 10.0
+    exact = mf.simulate(PAVEMENT, car, rough, solved_step=0.1 * step / 10.0, **travel)
+    for name in ("contact_force", "acceleration"):
+        assert largest(fine[name].values, exact[name].values) < 2e-4, name
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_coarse_steps_give_what_fine_ones_give():
+    """As closely as their bounds promise, on profiles of sixteen, thirty-two and ninety stations to a wave."""
+    car, travel = mf.quarter_car(**QUARTER_TRUCK), {"speed": 10.0, "duration": 6.0, "time_step": 1e-3}
+    for per_wave in (16, 32, 90):
+        road = mf.realise(
+            mf.IsoRoad.of_class("A", band=(0.02, 3.0)), length=100.0, step=1 / (3.0 * per_wave), seed=2
+        )
+        found = mf.simulate(PAVEMENT, car, road, **travel)
+        exact = mf.simulate(PAVEMENT, car, road, solved_step=1e-3, **travel)
+        for name in ("contact_force", "acceleration"):
+            assert largest(found[name].values, exact[name].values) < 1e-4, (name, per_wave)

@@ -225,9 +225,17 @@ FAULTS = [
     Fault(
         "road that levels off at its end",
         "roughness/along.py",
-        "onward(after, slope, curvature, length), first=slope,",
-        "0.0 * after, first=0.0,",
+        "elevation, slope - grade, length)",
+        "0.0 * after, 0.0, length)",
     ),
+    Fault(
+        "stations predicted backwards",
+        "_basics/prediction.py",
+        "coefficients[::-1].copy()",
+        "coefficients.copy()",
+    ),
+    Fault("nothing predicted", "roughness/along.py", "if not missed < GOING_ON.better", "if not missed < 0.0"),
+    Fault("differences of the sixth order", "_basics/differences.py", "** (2 * self.order)", "** 12"),
     Fault("slope of the end fades not", "_basics/smooth.py", "* (1.0 - smooth_step(beyond / length))", "* 1.0"),
     Fault(
         "grade left in",
@@ -240,8 +248,8 @@ FAULTS = [
     Fault(
         "no doubt at the end",
         "roughness/along.py",
-        "cubic(beyond, off,",
-        "cubic(beyond, 0 * off,",
+        "cubic(beyond, np.array(off),",
+        "cubic(beyond, 0 * np.array(off),",
     ),
     Fault(
         "contacts abreast",

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.prediction import predicted, predicting
 from movingfrf._basics.remembered import recalled
-from movingfrf._basics.smooth import memory, onward
+from movingfrf._basics.smooth import memory, onward, smooth_step
 from movingfrf._basics.spline import Piecewise, cubic
 from movingfrf.roughness.profile import Profile
 
@@ -27,6 +28,16 @@ class GoingOn:
     fewest: int = 4  # [2 to 16]
     longest: float = 1.0  # [0.1 to 2]
     pieces: int = 64  # [32 to 256]
+    # Where so many stations before predict the next one better than slope and curvature do, by this share of the
+    # error, it goes on as they predict, over so many times that length; of so many times as many stations. From so
+    # many stations before its end on another spline stands in for that of the profile, which is the same but for
+    # this share of the road's standard deviation.
+    order: int = 16  # [12 to 32]
+    better: float = 0.1  # [0.01 to 0.2]
+    slowly: float = 4.0  # [3 to 8]
+    times: int = 8  # [4 to 16]
+    joins: int = 40  # [30 to 60]
+    same: float = 5e-5  # [1e-6 to 1e-4]
     # How well the road is guessed past the end of a profile is told from so many guesses before it, which lie so
     # many times the length of a guess apart.
     guesses: int = 15  # [7 to 63]
@@ -62,22 +73,61 @@ class Rough(NamedTuple):
 class Past(NamedTuple):
     """How a path goes on past the end of its profile, about its elevation there and a grade."""
 
+    begins: float  # from where on it stands in for the profile's spline [m]
     onward: Piecewise  # elevation [m] over the distance from the end
-    fades: float  # over how many metres slope and curvature fade from there on
+    fades: float  # over how many metres it fades from the end on
+    coefficients: FloatArray | None = None  # of the stations before that predict the next one, where they do
 
     @classmethod
-    def of(cls, spline: Piecewise, grade: float) -> Past:
-        """Let slope and curvature fade, over a length that adds no frequencies."""
+    def of(cls, spline: Piecewise, grade: float, *, even: bool) -> Past:
+        """Let slope and curvature fade, or what the last stations predict, too slowly to add frequencies."""
         stations = spline.x
-        slope, curvature = (float(spline(stations[-1], order)) for order in (1, 2))
-        slope -= grade
-        extent = float(stations[-1] - stations[0])
+        extent, pieces = float(stations[-1] - stations[0]), spline.c.shape[1]
         latest = spline.c[:, -GOING_ON.together :]
         length = float(memory(latest[2] - grade, 2.0 * latest[1]))
-        length = min(max(length, GOING_ON.fewest * extent / spline.c.shape[1]), GOING_ON.longest * extent)
+        length = min(max(length, GOING_ON.fewest * extent / pieces), GOING_ON.longest * extent)
+        if even and (predicted := cls._predicted(spline, grade, min(GOING_ON.slowly * length, extent))):
+            return predicted
+        slope, curvature = (float(spline(stations[-1], order)) for order in (1, 2))
         after = np.linspace(0.0, length, GOING_ON.pieces + 1)
-        fading = cubic(after, onward(after, slope, curvature, length), first=slope, last=0.0)
-        return cls(Piecewise(np.append(after, length + 1.0), np.hstack([fading.c, np.zeros((4, 1))])), length)
+        elevation = onward(after, slope - grade, curvature, length)
+        return cls._level_at_last(float(stations[-1]), after, elevation, slope - grade, length)
+
+    @classmethod
+    def _predicted(cls, spline: Piecewise, grade: float, length: float) -> Past | None:
+        """Go on as the last stations predict; None where that is not much better than by slope and curvature."""
+        ends, joins, order = float(spline.x[-1]), GOING_ON.joins, GOING_ON.order
+        last = max(spline.x.size - GOING_ON.together, 0)
+        if spline.x.size - last < max(GOING_ON.times * order, 2 * joins):
+            return None
+        stations = spline.x[last:]
+        record = np.append(spline.c[3, last:], float(spline(ends))) - grade * (stations - ends)
+        record -= record[-1]
+        coefficients, missed = predicting(record, order)
+        if not missed < GOING_ON.better * np.sqrt(np.square(np.diff(record, n=3)).mean()):
+            return None
+        step = (ends - float(stations[0])) / (stations.size - 1)
+        after = step * np.arange(1, int(length / step) + 2)
+        goes_on = predicted(record, coefficients, after.size) * (1.0 - smooth_step(after / length))
+        # The spline of the profile does not know the next stations: one through the last and the next ones is
+        # smoother at the end, and hardly another one before it.
+        places = np.append(stations[-joins - 1 :] - ends, after)
+        slope = float(spline(stations[-joins - 1], 1)) - grade
+        found = cls._level_at_last(ends, places, np.append(record[-joins - 1 :], goes_on), slope, length)
+        between = 0.5 * (places[:joins] + places[1 : joins + 1])
+        changed = found.onward(between) + grade * between - (spline(between + ends) - spline(ends))
+        if np.abs(changed).max() > GOING_ON.same * record.std():
+            return None
+        return found._replace(coefficients=coefficients)
+
+    @classmethod
+    def _level_at_last(
+        cls, ends: float, places: FloatArray, elevation: FloatArray, slope: float, length: float
+    ) -> Past:
+        """Lay a spline through elevations, and go on level."""
+        fading = cubic(places, elevation, first=slope, last=0.0)
+        level = Piecewise(np.append(places, places[-1] + 1.0), np.hstack([fading.c, np.zeros((4, 1))]))
+        return cls(ends + float(places[0]), level, length)
 
 
 class Along(NamedTuple):
@@ -98,9 +148,10 @@ class Along(NamedTuple):
         if step is not None and profile.remembers and spline.x.size > GOING_ON.difference:
             rough = recalled(profile, f"roughness of path {path}", lambda: Rough.of(spline, step))
         if grade:
-            past = Past.of(spline, grade)
+            past = Past.of(spline, grade, even=step is not None)
         else:
-            past = recalled(profile, f"past the end of path {path}", lambda: Past.of(spline, 0.0))
+            name, even = f"past the end of path {path}", step is not None
+            past = recalled(profile, name, lambda: Past.of(spline, 0.0, even=even))
         return cls(spline, float(spline(datum_at)), datum_at, grade, past, rough)
 
     @property
@@ -113,6 +164,11 @@ class Along(NamedTuple):
         """Over how many metres slope and curvature fade from there on."""
         return self.past.fades
 
+    @property
+    def _at_the_end(self) -> float:
+        """Elevation there, about datum and grade [m]."""
+        return float(self.spline(self.ends)) - self.datum - self.grade * (self.ends - self.datum_at)
+
     def level(self, distance: FloatArray | float, order: int = 0) -> FloatArray:
         """Elevation about datum and grade [m], or a derivative of it, within the profile or beyond."""
         places = np.asarray(distance)
@@ -124,11 +180,11 @@ class Along(NamedTuple):
                 found -= self.grade * (places - self.datum_at)
         elif order == 1:
             found -= self.grade
-        if places.size and places.max() > ends:
-            past = places > ends
+        if places.size and places.max() > self.past.begins:
+            past = places > self.past.begins
             found[past] = self.past.onward(places[past] - ends, order)
             if order == 0:
-                found[past] += float(self.spline(ends)) - self.datum - self.grade * (ends - self.datum_at)
+                found[past] += self._at_the_end
         if places.size and places.min() < begins:
             before = places < begins
             slope = float(self.spline(begins, 1)) - self.grade
@@ -150,7 +206,10 @@ class Along(NamedTuple):
         """Elevation about datum and grade from one place to another [m], within the profile or beyond."""
         stations, count = self.spline.x, self.spline.c.shape[1]
         begin, end = np.searchsorted(stations, [first, last], side="right").tolist()
-        begin, end = min(max(begin - 1, 0), count - 1), min(max(end, 1), count)
+        beyond = last > self.past.begins
+        most = int(np.searchsorted(stations, self.past.begins)) if beyond else count
+        begin = min(max(begin - 1, 0), most if beyond else count - 1)
+        end = most if beyond else min(max(end, 1), count)
         places, pieces = stations[begin : end + 1], self.spline.c[:, begin:end].copy()
         pieces[3] -= self.datum + self.grade * (places[:-1] - self.datum_at)
         pieces[2] -= self.grade
@@ -158,12 +217,11 @@ class Along(NamedTuple):
             straight = np.zeros((4, 1))
             straight[2], straight[3] = pieces[2, 0], pieces[3, 0] - pieces[2, 0]
             places, pieces = np.append(places[0] - 1.0, places), np.hstack([straight, pieces])
-        if last > stations[-1]:
-            beyond = self.past.onward
-            onward = beyond.c.copy()
-            onward[3] += float(self.level(self.ends))
-            places = np.append(places, stations[-1] + beyond.x[1:])
-            pieces = np.hstack([pieces, onward])
+        if beyond:
+            goes_on = self.past.onward.c.copy()
+            goes_on[3] += self._at_the_end
+            places = np.append(places, self.ends + self.past.onward.x[1:])
+            pieces = np.hstack([pieces, goes_on])
         return Piecewise(places, pieces)
 
     def seen(self, distance: FloatArray, footprint: float, cams: float, derivative: int = 0) -> FloatArray:
@@ -180,15 +238,33 @@ class Along(NamedTuple):
     def doubt(self, reach: float) -> Piecewise:
         """How far guesses past the end of a profile are off, over the distance from there [m].
 
-        Guesses past places within the profile are off from what is there; an axis of guesses comes first.
+        Guesses past stations within the profile, from those up to there, are off from what is there; an axis of
+        guesses comes first.
         """
+        stations, joins = self.spline.x, GOING_ON.joins
         last = self.ends - reach
-        span = max(min(GOING_ON.apart * GOING_ON.guesses * reach, last - float(self.spline.x[0])), 0.0)
-        here = last - span * np.linspace(0.0, 1.0, GOING_ON.guesses)[:, None]
-        beyond = np.linspace(0.0, reach, GOING_ON.pieces + 1)
-        guessed = onward(beyond, self.level(here, 1), self.level(here, 2), self.fades)
-        off = guessed - (self.level(here + beyond) - self.level(here))
-        return cubic(beyond, off, first=0.0)
+        span = max(min(GOING_ON.apart * GOING_ON.guesses * reach, last - float(stations[0])), 0.0)
+        places = last - span * np.linspace(0.0, 1.0, GOING_ON.guesses)
+        here = np.clip(np.searchsorted(stations, places, side="right") - 1, 3, stations.size - 2)
+        beyond, off = np.linspace(0.0, reach, GOING_ON.pieces + 1), []
+        for station in here.tolist():
+            known = slice(max(station - joins, 0), station + 1)
+            guess = self._guessed(stations[known], self.level(stations[known]), beyond)
+            off.append(guess - self.level(stations[station] + beyond))
+        return cubic(beyond, np.array(off), first=0.0)
+
+    def _guessed(self, stations: FloatArray, elevation: FloatArray, beyond: FloatArray) -> FloatArray:
+        """Guess how a road goes on past the last of some stations, as past the end of the profile [m]."""
+        last, coefficients = elevation[-1], self.past.coefficients
+        spline = cubic(stations, elevation)
+        if coefficients is None or elevation.size < coefficients.size:
+            slope, curvature = (float(spline(stations[-1], order)) for order in (1, 2))
+            return last + onward(beyond, slope, curvature, self.fades)
+        step = float(stations[-1] - stations[0]) / (stations.size - 1)
+        after = step * np.arange(int(beyond[-1] / step) + 3)
+        goes_on = np.append(0.0, predicted(elevation - last, coefficients, after.size - 1))
+        goes_on *= 1.0 - smooth_step(after / self.fades)
+        return last + cubic(after, goes_on, first=float(spline(stations[-1], 1)))(beyond)
 
     def _averaged(self, distance: FloatArray, footprint: float, cams: float, derivative: int) -> FloatArray:
         """Average a stretch of it, counted from where that begins and about the level there.
