@@ -70,7 +70,7 @@ FAULTS = [
     Fault(
         "nothing is unresolved",
         "response/accuracy.py",
-        "return min(max(peaks, driven_by.missing), 1.0)",
+        "return min(max(float(peaks), driven_by.missing), 1.0)",
         "return 0.0",
     ),
     Fault("guesses do not matter", "response/simulation.py", "if excitation.guessed <= 0:", "if True:"),
@@ -89,12 +89,12 @@ FAULTS = [
     ),
     Fault("window that grows too much", "response/line.py", "growth: float = 3e3", "growth: float = 1e9"),
     Fault("cut that rings on", "response/line.py", "within: float = 0.2", "within: float = 1e9"),
-    Fault("held contacts for free ones", "response/line.py", "apart: float = 1 / 3", "apart: float = 0.0"),
+    Fault("held contacts for free ones", "response/line.py", "apart: float = 1 / 4", "apart: float = 0.0"),
     Fault(
         "octave from zero on",
         "response/accuracy.py",
-        "partial(_largest_swing, line, begins",
-        "partial(_largest_swing, line, 1",
+        "_each(line, begins, octaves",
+        "_each(line, 1, octaves",
     ),
     Fault(
         "acceleration sign",
@@ -158,9 +158,29 @@ FAULTS = [
     Fault(
         "looked at again",
         "response/sampling.py",
-        "if after is None else after.points",
-        "if after is after else 0.0",
+        "line = after.line",
+        "line = _with_points(system, line, 256.0)",
     ),
+    Fault(
+        "compiled: D G without G",
+        "response/compiled.py",
+        "total += dynamic[i, m, k] * frf[which[m, j], k]",
+        "total += 0.0 * dynamic[i, m, k] * frf[which[m, j], k]",
+    ),
+    Fault(
+        "compiled: no pivoting",
+        "response/compiled.py",
+        "if squared(system[row, step]) > squared(system[pivot, step]):",
+        "if squared(system[row, step]) > np.inf:",
+    ),
+    Fault(
+        "compiled: back to the first",
+        "response/compiled.py",
+        "range(step + 1, count):\n                total -=",
+        "range(step + 2, count):\n                total -=",
+    ),
+    Fault("compiled: it does not stiffen", "response/compiled.py", "frf[row, k] *= kept[k]", "frf[row, k] *= 1.0"),
+    Fault("foreseen elsewhere", "response/system.py", "and (known.omega == omega).all()", ""),
     Fault("one car counts", "response/along.py", "self.order.kind.count(number)", "1"),
     Fault("Cramer's rule turned", "response/batches.py", "a * second - c * first", "a * second + c * first"),
     Fault(

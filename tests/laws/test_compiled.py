@@ -11,6 +11,7 @@ import pytest
 import movingfrf as mf
 from movingfrf._basics.compiling import PATIENCE, compiling, loops_for, numba_is_there
 from movingfrf._basics.spline import cubic
+from movingfrf.response.system import Tables
 from tests.analytic.vehicle_parts import RIGID
 from tests.helpers import DAMPED, UNDAMPED, VEHICLES
 
@@ -95,11 +96,36 @@ def test_splines():
                 np.testing.assert_allclose(one, other, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("vehicle", ["half_truck", "quarter_truck"])
+@pytest.mark.parametrize("contacts", [1, 2, 3, 5, 16])
+def test_contacts_on_a_guideway(contacts):
+    """Of any size to each other: the largest entry of a column may stand anywhere in it."""
+    random = np.random.default_rng(contacts)
+    frf, dynamic, rough = (
+        random.normal(size=(*shape, 40, 2)).view(complex)[..., 0]
+        for shape in ((contacts, contacts), (contacts, contacts), (2, 3, contacts))
+    )
+    dynamic *= 10.0 ** random.uniform(-4, 4, size=(contacts, 1, 1))
+    tables = Tables(np.zeros(40, complex), frf, dynamic)
+    one, other = both(lambda: tables.coupled(rough))
+    for part, same in zip(one, other, strict=True):
+        assert part.shape == rough.shape
+        assert off(part, same) < 1e-9
+    # Where D G = 0 but for one entry, which is large, elimination must not begin with that of the diagonal.
+    frf[:], dynamic[:] = np.eye(contacts)[:, :, None], -np.eye(contacts)[:, :, None] * (1.0 - 1e-15)
+    frf += 1e-3 * np.eye(contacts, k=1)[:, :, None] + 1e-3 * np.eye(contacts, k=1 - contacts)[:, :, None]
+    if contacts > 1:
+        one, other = both(lambda: tables.coupled(rough))
+        assert off(one[0], other[0]) < 1e-9
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+@pytest.mark.parametrize("truncation", [None, 40.0, 0.0])
+@pytest.mark.parametrize("vehicle", ["half_truck", "quarter_truck", "full_truck", "bogie"])
 @pytest.mark.parametrize("road", ["euler_bernoulli_winkler", "rail_pad_sleeper_ballast"])
-def test_a_whole_drive(road, vehicle):
+def test_a_whole_drive(road, vehicle, truncation):
     profile = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 4.0)), length=60.0, start=-6.0)
-    one, other = both(lambda: mf.simulate(DAMPED[road], VEHICLES[vehicle], profile, speed=15.0, duration=2.0))
+    driven, travel = (VEHICLES | RIGID)[vehicle], {"speed": 15.0, "duration": 2.0, "truncation": truncation}
+    one, other = both(lambda: mf.simulate(DAMPED[road], driven, profile, **travel))
     for name in ("contact_force", "deflection", "motion", "acceleration"):
         assert off(one[name].values, other[name].values) < 1e-9
     assert one.attrs["truncation"] == pytest.approx(other.attrs["truncation"], rel=1e-6)

@@ -33,6 +33,13 @@ def squared(values: NumberArray) -> FloatArray:
     return size
 
 
+def handed(values: NumberArray, kind: type = complex) -> Any:
+    """Hand an array over to compiled loops, which take those that lie in order and may be written to."""
+    flags = values.flags
+    ready = flags.c_contiguous and flags.writeable and values.dtype == kind
+    return values if ready else np.array(values, kind, order="C")
+
+
 def require_memory(needed: float, what: str) -> None:
     """Refuse a computation that would not fit into the free memory.
 

@@ -90,11 +90,14 @@ def recalled(value: Any, name: str, compute: Callable[[], Implied]) -> Implied:
 
 
 def _sealed(implied: Implied) -> Implied:
-    """Make the arrays in a value read-only: those of tuples and of dataclasses too."""
+    """Make the arrays in a value read-only: those of tuples, dicts and dataclasses too."""
     if isinstance(implied, np.ndarray):
         implied.setflags(write=False)
     elif isinstance(implied, tuple):
         for part in implied:
+            _sealed(part)
+    elif isinstance(implied, dict):
+        for part in implied.values():
             _sealed(part)
     elif is_dataclass(implied):
         for field in fields(implied):

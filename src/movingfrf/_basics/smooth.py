@@ -7,7 +7,7 @@ from math import comb
 
 import numpy as np
 
-from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.arrays import FloatArray, handed
 from movingfrf._basics.compiling import loops_for
 
 
@@ -44,7 +44,7 @@ def smoothest_step(x: FloatArray) -> FloatArray:
     [0.0, 0.0, 0.5, 1.0, 1.0]
     """
     if loops := loops_for("_basics.compiled", x.size // 16):
-        flat = np.require(x, float, ("C", "W")).ravel()
+        flat = handed(x, float).ravel()
         found: FloatArray = loops.smoothest_step(flat, coefficients()).reshape(x.shape)
         return found
     step = (x > 0.5).astype(float)

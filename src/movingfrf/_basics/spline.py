@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dgtsv
 
-from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.arrays import FloatArray, handed
 from movingfrf._basics.compiling import loops_for
 from movingfrf._basics.values import Value
 
@@ -53,7 +53,7 @@ class Piecewise(Value):
             known = [np.ascontiguousarray(part).view() for part in (self.x, self.c)]
             for part in known:
                 part.setflags(write=False)
-            return loops.piecewise(*known, np.require(flat, requirements=("C", "W")), order).reshape(places.shape)
+            return loops.piecewise(*known, handed(flat, float), order).reshape(places.shape)
         inner = self.x[1:-1]
         first, last = np.searchsorted(inner, flat[[0, -1]], side="right").tolist() if flat.size else (0, 0)
         if flat.size > last - first > 0 and (flat[1:] >= flat[:-1]).all():

@@ -11,14 +11,15 @@ from movingfrf.guideways.roots import ROOTS
 
 
 @loop
-def _squared(value):
+def squared(value):
+    """Squared magnitude."""
     return value.real * value.real + value.imag * value.imag
 
 
 @loop
-def _over(above, below):
+def over(above, below):
     """Quotient: complex division, but for what it does beyond 1e±150, takes most of the time otherwise."""
-    share = 1.0 / _squared(below)
+    share = 1.0 / squared(below)
     return complex(
         (above.real * below.real + above.imag * below.imag) * share,
         (above.imag * below.real - above.real * below.imag) * share,
@@ -64,8 +65,8 @@ def _on_circles(coefficients, roots):
     degree = roots.size
     size = np.empty(degree + 1)
     for a in range(degree + 1):
-        squared = _squared(coefficients[a])
-        size[a] = 0.5 * math.log(squared) if squared > 0.0 else -np.inf
+        magnitude = squared(coefficients[a])
+        size[a] = 0.5 * math.log(magnitude) if magnitude > 0.0 else -np.inf
     first = 0
     while first < degree:
         steepest, last = -np.inf, first + 1
@@ -92,7 +93,7 @@ def _settle(coefficients, roots, others, search):
         for n in range(degree):
             for m in range(n):
                 apart = roots[n] - roots[m]
-                share = 1.0 / _squared(apart)
+                share = 1.0 / squared(apart)
                 # From one place no two part by themselves.
                 if share < np.inf:
                     pull = complex(apart.real * share, -apart.imag * share)
@@ -101,13 +102,13 @@ def _settle(coefficients, roots, others, search):
         settled = True
         for n in range(degree):
             value, slope = _both(coefficients, roots[n])
-            step = _over(value, slope - value * others[n])
+            step = over(value, slope - value * others[n])
             # At a multiple root the slope vanishes and so does the need to move.
-            if not _squared(step) < np.inf:
+            if not squared(step) < np.inf:
                 step = 0j
             roots[n] -= step
-            size, moved = _squared(roots[n]), _squared(step)
-            left = moved * (_squared(others[n]) * size + 1.0)
+            size, moved = squared(roots[n]), squared(step)
+            left = moved * (squared(others[n]) * size + 1.0)
             if not (moved <= near * size and left * left * moved <= settled_within * size * size * size):
                 settled = False
         if settled:
@@ -119,8 +120,9 @@ def _settle(coefficients, roots, others, search):
 
 
 @loop
-def waves(above, below, size, by_omega, omega, uncertain, search):
+def waves(guideway, omega):
     """Find waves, and at which frequencies two of them meet from both sides; as `waves._waves`."""
+    above, below, size, by_omega, uncertain, search = guideway
     degree, count = above.shape[0] - 1, omega.size
     kappa, weight = np.empty((degree, count), np.complex128), np.empty((degree, count), np.complex128)
     forward, infinite = np.empty((degree, count), np.bool_), np.zeros(count, np.bool_)
@@ -132,7 +134,7 @@ def waves(above, below, size, by_omega, omega, uncertain, search):
         s = complex(-omega[at].imag, omega[at].real)
         _at(above, s, denominator)
         _at(below, s, numerator)
-        _at(size, math.sqrt(_squared(s)), magnitude)
+        _at(size, math.sqrt(squared(s)), magnitude)
         if at == 0:
             _on_circles(denominator, roots)
         else:
@@ -159,20 +161,20 @@ def waves(above, below, size, by_omega, omega, uncertain, search):
             root = roots[n]
             slope = _value(derivative, root)
             kappa[n, at] = root
-            weight[n, at] = 1j * _over(_value(numerator, root), slope)
+            weight[n, at] = 1j * over(_value(numerator, root), slope)
             side = root.imag
-            doubt = uncertain * _value(magnitude, math.sqrt(_squared(root)))
+            doubt = uncertain * _value(magnitude, math.sqrt(squared(root)))
             # What still moves is a multiple root, or none.
-            if not settled and _squared(_value(denominator, root)) > doubt * doubt:
+            if not settled and squared(_value(denominator, root)) > doubt * doubt:
                 infinite[at] = True
-            if side * side * _squared(slope) <= doubt * doubt:
+            if side * side * squared(slope) <= doubt * doubt:
                 bend = 0j
                 for a in range(degree - 1, 0, -1):
                     bend = bend * root + a * derivative[a]
-                if _squared(slope) <= 2.0 * doubt * math.sqrt(_squared(bend)):
+                if squared(slope) <= 2.0 * doubt * math.sqrt(squared(bend)):
                     infinite[at] = True
                 _at(by_omega, s, change)
-                side = _over(_value(change, root), slope).real
+                side = over(_value(change, root), slope).real
             forward[n, at] = side > 0.0
     return (kappa, weight, forward), infinite
 
@@ -203,5 +205,5 @@ def ready():
     size = above.real.copy()
     for table in (above, below, size, by_omega):
         table.setflags(write=False)
-    found, _ = waves(above, below, size, by_omega, np.array([1 - 0.1j]), 1e-12, ROOTS.numbers)
+    found, _ = waves((above, below, size, by_omega, 1e-12, ROOTS.numbers), np.array([1 - 0.1j]))
     summed(*found, np.array([0.0, 1.0]))

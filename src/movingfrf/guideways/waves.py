@@ -15,10 +15,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray, squared
+from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, NumberArray, handed, squared
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.compiling import loops_for
 from movingfrf.guideways.roots import ROOTS, inverse, wavenumbers
+
+# What is less than this share of all terms of a dynamic stiffness counts as nothing.
+UNCERTAIN = ROOTS.rounding_errors * np.finfo(float).eps
 
 
 def polynomial(terms: dict[tuple[int, int], float]) -> FloatArray:
@@ -162,7 +165,7 @@ class Waves(NamedTuple):
         if derivative:
             weight = weight * (1j * kappa) ** derivative
         if loops := loops_for("guideways.compiled", kappa.size * ahead.size):
-            return loops.summed(kappa, weight, forward, np.require(ahead, requirements=("C", "W")))
+            return loops.summed(kappa, weight, forward, handed(ahead, float))
         frf = np.zeros((ahead.size, kappa.shape[1]), complex)
         for direction in (True, False):
             here = np.flatnonzero((ahead >= 0) == direction)
@@ -183,6 +186,16 @@ class Seen(NamedTuple):
     below: ComplexArray  # denominator N
     size: FloatArray  # sum of the magnitudes of the terms of D, in |κ| and |ω|
     by_omega: ComplexArray  # derivative of D by ω
+
+    @property
+    def waves(self) -> int:
+        """Number of waves."""
+        return len(self.above) - 1
+
+    @property
+    def numbers(self) -> tuple[Any, ...]:
+        """What compiled loops take of a guideway."""
+        return (*self, UNCERTAIN, ROOTS.numbers)
 
     @classmethod
     def of(cls, stiffness: Ratio, speed: float) -> Seen:
@@ -224,14 +237,13 @@ def waves(seen: Seen, speed: float, omega: ComplexArray) -> Waves:
     if not omega.size:
         nothing = np.zeros((0, 0), complex)
         return Waves(nothing, nothing, nothing.real > 0)
-    uncertain = ROOTS.rounding_errors * np.finfo(float).eps
-    if loops := loops_for("guideways.compiled", (len(seen.above) - 1) * omega.size):
-        found, infinite = loops.waves(*seen, np.require(omega, requirements=("C", "W")), uncertain, ROOTS.numbers)
+    if loops := loops_for("guideways.compiled", seen.waves * omega.size):
+        found, infinite = loops.waves(seen.numbers, handed(omega))
     else:
         with np.errstate(all="ignore"):
-            found, infinite = _waves(seen, omega, uncertain)
+            found, infinite = _waves(seen, omega, UNCERTAIN)
     if infinite.any():
-        _refuse(infinite, speed, omega)
+        refuse(infinite, speed, omega)
     require_finite(found[1], speed, omega)
     return Waves(*found)
 
@@ -246,10 +258,17 @@ def require_finite(values: ComplexArray, speed: float, omega: ComplexArray) -> N
     """
     # A sum is finite only if all of its terms are.
     if not np.isfinite(values.sum()):
-        _refuse(~np.isfinite(values).all(axis=tuple(range(values.ndim - 1))), speed, omega)
+        refuse(~np.isfinite(values).all(axis=tuple(range(values.ndim - 1))), speed, omega)
 
 
-def _refuse(bad: Any, speed: float, omega: ComplexArray) -> None:
+def refuse(bad: Any, speed: float, omega: ComplexArray) -> None:
+    """Refuse a response that is infinite at the first of the marked frequencies [rad/s], at this speed [m/s].
+
+    Raises
+    ------
+    SolveError
+        With that frequency.
+    """
     frequency = omega[bad.argmax()] / (2 * np.pi)
     raise SolveError(
         f"the moving FRF is infinite at {frequency.real:.6g} Hz and {speed:.6g} m/s: an undamped resonance"

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -63,15 +62,15 @@ def unresolved(driven_by: Excited, response: Response, histories: CoupledHistori
         Relative to the largest value of a channel.
     """
     line, beyond, begins = driven_by.line, driven_by.beyond, driven_by.omega.size // 2
-    peaks = 0.0
-    for spectra, order, records, share in (
-        (response.force, 0, histories.force.values, beyond[: response.force.shape[-2]]),
-        (response.motion, 2, histories.acceleration.values, beyond[-response.motion.shape[-2] :]),
-    ):
-        octave = _each(spectra[..., begins:], partial(_largest_swing, line, begins, order))
-        peaks = max(peaks, float(relative(share * octave, largest(records)).max(initial=0.0)))
+    contacts, dofs = response.force.shape[-2], response.motion.shape[-2]
+    octaves = [(response.force[..., begins:], 0), (response.motion[..., begins:], 2)]
+    forces, accelerations = _each(line, begins, octaves, _largest)
+    peaks = max(
+        relative(beyond[:contacts] * forces, largest(histories.force.values)).max(initial=0.0),
+        relative(beyond[-dofs:] * accelerations, largest(histories.acceleration.values)).max(initial=0.0),
+    )
     # No more than all can be missing; and no less than what is known to be left out, relative L2.
-    return min(max(peaks, driven_by.missing), 1.0)
+    return min(max(float(peaks), driven_by.missing), 1.0)
 
 
 def hidden(
@@ -103,11 +102,10 @@ def hidden(
     # What happens right after the end shows before it, for as long as the cut rings.
     kept = max(1.0 - 2.0 / TRANSFORM.fading_in / line.samples, 0.5)
 
-    def size(some: ComplexArray) -> FloatArray:
-        swings = line.swings(some, first, derivative=derivative)
+    def size(swings: FloatArray) -> FloatArray:
         return np.sqrt(0.5 * swings[..., : max(int(kept * swings.shape[-1]), 1)].mean(axis=-1))
 
-    part, whole = _each(spectra[..., first:], size), rms(records)
+    (part,), whole = _each(line, first, [(spectra[..., first:], derivative)], size), rms(records)
     # Few samples may all miss it.
     whole = np.maximum(whole, part)
     whole = np.maximum(whole, (SAMPLING.smallest if least is None else least) * whole.max(initial=0.0))
@@ -115,23 +113,44 @@ def hidden(
     return share.max(axis=0)
 
 
-def _largest_swing(line: Line, first: int, order: int, some: ComplexArray) -> FloatArray:
-    """Largest envelope in a record of what begins at a frequency, (case, port, frequency) to (case, port)."""
-    found: FloatArray = np.sqrt(line.swings(some, first, derivative=order).max(axis=-1))
+def _largest(swings: FloatArray) -> FloatArray:
+    """Largest envelope of each channel."""
+    found: FloatArray = np.sqrt(swings.max(axis=-1))
     return found
 
 
-def _mean_swing(line: Line, first: int, order: int, some: ComplexArray) -> FloatArray:
-    """Mean squared envelope of what begins at a frequency, not sharply, (case, port, frequency) to (case, port)."""
-    found: FloatArray = line.swings(some, first, derivative=order, fading_in=False).mean(axis=-1)
+def _mean(swings: FloatArray) -> FloatArray:
+    """Mean squared envelope of each channel."""
+    found: FloatArray = swings.mean(axis=-1)
     return found
 
 
-def _each(spectra: ComplexArray, measured: Callable[[ComplexArray], FloatArray]) -> FloatArray:
-    """Measure channels, (case, port, frequency) to (case, port), a few at a time: memory for all costs more."""
-    ports, together = spectra.shape[-2], TRANSFORM.rows(2 * spectra.shape[-1])
-    some = [measured(spectra[..., n : n + together, :]) for n in range(0, ports, together)]
-    return np.concatenate(some, axis=-1) if some else np.zeros(spectra.shape[:-1])
+def _each(
+    line: Line,
+    first: int,
+    asked: Sequence[tuple[ComplexArray, int]],
+    measured: Callable[[FloatArray], FloatArray],
+    *,
+    fading_in: bool = True,
+) -> list[FloatArray]:
+    """Measure the squared envelopes, `Line.swings`, of what begins at a frequency, or of its derivatives in time.
+
+    A few channels at a time: memory for all costs more. From (case, port, frequency) to (case, port) each.
+    """
+    cases, longest = len(asked[0][0]), max(spectra.shape[-1] for spectra, _ in asked)
+    s = 1j * line.omega(slice(first, first + longest))
+    factors = {order: s**order for _, order in asked if order}
+    channels = [(channel, order) for spectra, order in asked for channel in spectra.swapaxes(0, 1)]
+    together, measures = TRANSFORM.rows(2 * longest), list[FloatArray]()
+    for begin in range(0, len(channels), together):
+        some = channels[begin : begin + together]
+        block = np.zeros((len(some), cases, longest), complex)
+        for (channel, order), there in zip(some, block, strict=True):
+            size = channel.shape[-1]
+            np.multiply(channel, factors[order][:size] if order else 1.0, out=there[:, :size])
+        measures.extend(measured(line.swings(block, first, fading_in=fading_in)))
+    ends = np.cumsum([spectra.shape[1] for spectra, _ in asked])[:-1]
+    return [part.T for part in np.split(np.array(measures), ends)]
 
 
 def past_the_end(
@@ -197,7 +216,7 @@ def truncated(system: System, driven_by: Excited, response: Response, histories:
     for spectra, order, records in zip(
         (*change, change[-1]), (0, 0, 0, 2), (part.values for part in histories), strict=True
     ):
-        swings = _each(spectra, partial(_mean_swing, line, first, order))
+        (swings,) = _each(line, first, [(spectra, order)], _mean, fading_in=False)
         share = float(relative(np.sqrt(0.5 * swings), rms(records)).max(initial=0.0))
         if share > SAMPLING.slight:
             # The record without a truncation is another one.

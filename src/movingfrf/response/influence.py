@@ -156,6 +156,11 @@ def middles(starts: IntArray, lines: int) -> IntArray:
     return (starts + ends - 1) // 2
 
 
+def looked_at(line: Line, truncation: float | None) -> ComplexArray:
+    """Give the frequencies [rad/s] at which `influence` looks at a system, for a truncation that is stated [Hz]."""
+    return line.omega(middles(_bands(line, truncation), line.size))
+
+
 def influence(system: Sized, line: Line, energy: FloatArray, truncation: float | None, alike: float) -> Influence:
     """Estimate outputs, and the guideway's part in them, from the system at the middle of each band.
 

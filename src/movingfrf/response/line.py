@@ -35,7 +35,7 @@ class Transform:
     rings: float = 12.0  # [8 to 20]
     # The padding is so much of a record at least, or so long: on a guideway motion may die away more slowly than it
     # would on held contacts.
-    apart: float = 1 / 3  # [1/8 to 1]
+    apart: float = 1 / 4  # [1/5 to 1]
     longest: float = 30.0  # [s; 10 to 300]
     # And so many times the record at most, but for the fading.
     most: float = 50.0  # [20 to 100]
@@ -106,7 +106,7 @@ class Line(Remembering):
 
     X(ω) = ∫ x(t) e^{−iωt} dt, evaluated along ω − iη (exponential window, Kausel and Roësset 1992). The discrete
     transform implies that all repeats itself. With η as large as the end of the record allows, a padding of 0.6 of
-    the record damps that to `TRANSFORM.wrap_around`; a third where motion dies away; more beside a cut.
+    the record damps that to `TRANSFORM.wrap_around`; a quarter where motion dies away; more beside a cut.
     What drives a system is asked for in steps of its own, finer or coarser than those of the record.
 
     Parameters
@@ -409,9 +409,7 @@ class Line(Remembering):
         """
         return smoothest_step((np.arange(size) - first) / max(TRANSFORM.fading_in * first, 1.0))
 
-    def swings(
-        self, spectra: ComplexArray, first: int, *, derivative: int = 0, fading_in: bool = True
-    ) -> FloatArray:
+    def swings(self, spectra: ComplexArray, first: int, *, fading_in: bool = True) -> FloatArray:
         """Squared envelope within the record of what spectra hold from some frequency on.
 
         Parameters
@@ -420,8 +418,6 @@ class Line(Remembering):
             As `records` takes them, but for the frequencies below the first one.
         first : int
             Number of the first one.
-        derivative : int
-            Order of the derivative with respect to time.
         fading_in : bool
             Whether they fade in, as in `from_on`, or begin by themselves.
 
@@ -431,10 +427,7 @@ class Line(Remembering):
             In the unit of the record squared, from the sample after zero on: what begins abruptly at t = 0 is
             everywhere before that.
         """
-        last = first + spectra.shape[-1]
-        above = spectra * self.from_on(first, last)[first:] if fading_in else spectra
-        if derivative:
-            above = above * (1j * self.omega(slice(first, last))) ** derivative
+        above = spectra * self.from_on(first, first + spectra.shape[-1])[first:] if fading_in else spectra
         # Shifted down to zero frequency, not many more samples than there are frequencies follow it.
         samples = int(scipy.fft.next_fast_len(max(int(TRANSFORM.follows * above.shape[-1]), 16)))
         swinging = scipy.fft.ifft(above, samples)

@@ -117,9 +117,9 @@ class Driving(NamedTuple):
                     return every / stations
         return wanted.per_station * every
 
-    def hides(self, points: float, period: float, found: Influence) -> float:
-        """Bound what sampling in so many steps per period [s] hides of any output, relative L2."""
-        stations = period / (points * self.step)
+    def hides(self, line: Line, found: Influence) -> float:
+        """Bound what sampling in the steps of a line hides of any output, relative L2."""
+        period, stations = line.period, line.period / (line.solved * self.step)
         if self.differences is None or stations < 1.0:
             return 0.0
         # A spline through the stations has images of its waves, which fall back onto these, or near them.
@@ -141,7 +141,6 @@ class Excited(NamedTuple):
     left_out: float  # of any output, relative L2, where no step that is allowed is fine enough
     beyond: FloatArray  # (output,) what lies beyond over what lies in the highest octave that is solved
     missing: float  # what of any output is known to be left out, relative L2, where the step is stated
-    points: float  # of the line per period, before their number was made to factorise
     found: Influence  # along the line
     energies: tuple[float, ...]  # in the highest quarter, of ever finer steps
 
@@ -174,7 +173,7 @@ def excited(
     driving : Driving
         What drives it.
     line : Line
-        The record.
+        The record; sampling begins in steps of its own if it has them, or else as `at_first` says.
     truncation : float, optional
         Frequency beyond which the road counts as rigid [Hz]; None: it is found.
     solved_step : float, optional
@@ -194,30 +193,25 @@ def excited(
     ValueError
         If memory would not hold it.
     """
-    points = driving.points(line.period, wanted) if after is None else after.points
-    points = max(points, SAMPLING.least)
-    stated = None if solved_step is None else int(np.ceil(0.5 * line.period / solved_step)) + 1
-    if stated is not None:
-        points = max(points, 2.0 * stated)
-    require_memory(
-        TRANSFORM.bytes_per_sample * system.ports * points,
-        f"a period of {line.period:.4g} s solved in steps of {line.period / points:.3g} s",
-    )
+    stated = None if solved_step is None else _harmonics(line, solved_step)
+    if after is not None:
+        line = after.line
+    elif line.points is None:
+        line = at_first(system, driving, line, solved_step, wanted)
     energies = (np.inf, np.inf, np.inf) if after is None else after.energies[:-1]
     while True:
-        line = replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
         given = driving.given(line)
         parts, energy = line.looked_at(given)
         found = influence(system, line, energy, truncation, wanted.alike) if after is None else after.found
-        if driving.hides(points, line.period, found) > SAMPLING.hidden * wanted.negligible:
-            points, after = wanted.per_station * line.period / driving.step, None
+        if driving.hides(line, found) > SAMPLING.hidden * wanted.negligible:
+            line, after = _with_points(system, line, wanted.per_station * line.period / driving.step), None
             continue
         highest = found.content(int(SAMPLING.quarter * line.size))
         energies = (*energies, highest**2)
         # Beyond this frequency what an abrupt change adds has passed when the next sample is taken.
         passed = int(SAMPLING.passed * line.period / (2 * np.pi * line.clear(given)))
         at_once = SAMPLING.at_once / np.sqrt(line.size)
-        ports = given.values[..., 0].size
+        points, ports = line.solved, given.values[..., 0].size
         relaxed = SAMPLING.costly if points * ports > SAMPLING.many else 1.0
         negligible = relaxed * wanted.negligible
         enough = highest <= negligible and (passed <= SAMPLING.quarter * line.size or highest <= at_once)
@@ -228,7 +222,7 @@ def excited(
         falls = not apart or energies[-1] <= SAMPLING.falling * energies[-4]
         if not falls and not (wanted.told and _stiffens(system, line, found)):
             break
-        points, after = 2 * points, None
+        line, after = _with_points(system, line, 2 * points), None
     fades = SAMPLING.fades_abrupt if given.abrupt else SAMPLING.fades
     if stated is None:
         limit = negligible if given.abrupt else relaxed * wanted.smooth
@@ -258,10 +252,55 @@ def excited(
         left_out=0.0 if enough else highest,
         beyond=_beyond(found, ends, count),
         missing=0.0 if stated is None else found.content(ends),
-        points=points,
         found=found,
         energies=energies,
     )
+
+
+def at_first(system: Sized, driving: Driving, line: Line, solved_step: float | None, wanted: Wanted) -> Line:
+    """Put so many steps on a line as sampling begins with.
+
+    Parameters
+    ----------
+    system : System or Prescribed
+        What is driven.
+    driving : Driving
+        What drives it.
+    line : Line
+        The record.
+    solved_step : float or None
+        Step that is stated [s].
+    wanted : Wanted
+        How much is solved.
+
+    Returns
+    -------
+    Line
+        The same record.
+
+    Raises
+    ------
+    ValueError
+        If memory would not hold it.
+    """
+    points = max(driving.points(line.period, wanted), SAMPLING.least)
+    if solved_step is not None:
+        points = max(points, 2.0 * _harmonics(line, solved_step))
+    return _with_points(system, line, points)
+
+
+def _with_points(system: Sized, line: Line, points: float) -> Line:
+    """Put at least so many steps per period on a line."""
+    require_memory(
+        TRANSFORM.bytes_per_sample * system.ports * points,
+        f"a period of {line.period:.4g} s solved in steps of {line.period / points:.3g} s",
+    )
+    return replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
+
+
+def _harmonics(line: Line, step: float) -> int:
+    """Count the harmonics of a line from zero up to one of which half a period is no more than a step [s]."""
+    return int(np.ceil(0.5 * line.period / step)) + 1
 
 
 def _beyond(found: Influence, ends: int, count: int) -> FloatArray:

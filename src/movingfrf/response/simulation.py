@@ -10,16 +10,18 @@ import numpy as np
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.remembered import recalled
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.accuracy import hidden, past_the_end, truncated, unresolved
 from movingfrf.response.batches import unthreaded
+from movingfrf.response.influence import looked_at
 from movingfrf.response.line import Given, Line, require_record
-from movingfrf.response.sampling import SAMPLING, Driving, Excited, excited
+from movingfrf.response.sampling import SAMPLING, Driving, Excited, at_first, excited
 from movingfrf.response.solve import solve
 from movingfrf.response.survey import SteadyState, survey
 from movingfrf.response.system import CoupledHistories, Response, System
 from movingfrf.response.truncation import Truncation
-from movingfrf.results.labels import attributes, labelled, turned
+from movingfrf.results.labels import attributes, labelled, ready, turned
 from movingfrf.roughness.excitation import Excitation, Touch, excite
 from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.vehicles.journey import Journey
@@ -159,8 +161,11 @@ def driven(
     excitation = excitation_of(profile, vehicle, journey)
     system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)
     progress("steady state", 0.0)
-    surveyed = survey(system)
-    driven_by, response, histories, left_out = _solved(system, excitation, journey, progress)
+    driving = _driving(excitation, journey)
+    line = line_of(journey, vehicle, fading=excitation.fading(journey.distance) / journey.speed)
+    line = at_first(system, driving, line, journey.solved_step, SAMPLING.road)
+    surveyed = survey(system, soon=looked_at(line, journey.truncation))
+    driven_by, response, histories, left_out = _solved(system, driving, line, journey, progress)
     cut = truncated(system, driven_by, response, histories)
     elevation = excitation.elevation(journey.travelled)
     steady, wheels = surveyed.steady, range(len(vehicle.contacts))
@@ -194,7 +199,7 @@ def driven(
         *find.graded(*excitation.slopes),
     ]
     values = {
-        **journey.coordinates(vehicle),
+        "time": journey.times,
         **_records(histories, steady, elevation),
         "static_load": steady.load,
         "static_deflection": steady.deflection,
@@ -219,7 +224,7 @@ def driven(
         profile_steps="\n".join(profile.steps),
         findings=found,
     )
-    return labelled(values, settings)
+    return labelled(values, settings, recalled(vehicle, "labels", lambda: ready("coupled", vehicle.coordinates)))
 
 
 def excitation_of(profile: Profile, vehicle: Vehicle, journey: Journey) -> Excitation:
@@ -239,18 +244,16 @@ def excitation_of(profile: Profile, vehicle: Vehicle, journey: Journey) -> Excit
     Excitation
         To be asked at any distance travelled.
     """
-    touch = Touch(**vehicle.touching)
+    touch = recalled(vehicle, "touch", lambda: Touch(**vehicle.touching))
     return excite(profile, touch, start=journey.start, distance=journey.distance, blend=journey.blend)
 
 
 def _solved(
-    system: System, excitation: Excitation, journey: Journey, progress: Progress
+    system: System, driving: Driving, line: Line, journey: Journey, progress: Progress
 ) -> tuple[Excited, Response, CoupledHistories, float]:
     """Solve, for more where what is left out matters to a channel's largest value; and say how much it does."""
-    line = line_of(journey, system.vehicle, fading=excitation.fading(journey.distance) / journey.speed)
     wanted = SAMPLING.road
     before: Excited | None = None
-    driving = _driving(excitation, journey)
     for _ in range(SAMPLING.rounds):
         progress("sampling", 0.0)
         # One part, one case.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import movingfrf.results.findings as find
-from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.remembered import recalled
 from movingfrf.guideways.guideway import findings_of
 from movingfrf.response.along import CarByCar
@@ -52,13 +52,15 @@ class Survey:
 
 
 @unthreaded
-def survey(system: System) -> Survey:
+def survey(system: System, soon: ComplexArray | None = None) -> Survey:
     """Look at a system before it is solved.
 
     Parameters
     ----------
     system : System
         Vehicle and road.
+    soon : ndarray, optional
+        Frequencies [rad/s] at which it will be looked at next, evaluated with those for the survey.
 
     Returns
     -------
@@ -76,9 +78,10 @@ def survey(system: System) -> Survey:
     # The vehicle alone tells along what path.
     vehicle, speed = system.vehicle, system.speed
     path = stretches(recalled(vehicle, "path along the axis", lambda: along_the_axis(vehicle, speed)), batch)
-    tables = system.at_each([np.zeros(1, complex), *path])
-    steady = steady_state(system, next(tables))
-    require_stable(system, tables)
+    at_rest = np.zeros(1, complex)
+    system.foresee([at_rest, *path] if soon is None else [at_rest, *path, soon])
+    steady = steady_state(system, system.at(at_rest))
+    require_stable(system, map(system.at, path))
     return Survey(steady=steady, critical_speed=critical_speed, findings=tuple(findings))
 
 

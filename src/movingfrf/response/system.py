@@ -7,23 +7,25 @@ frequency, at the ports where the two meet. Axes are (*case, port, frequency).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
+from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, handed
+from movingfrf._basics.compiling import loops_for
 from movingfrf._basics.remembered import Remembering, recalled, remembered
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import Track
-from movingfrf.guideways.waves import Seen, waves
+from movingfrf.guideways.waves import Seen, refuse, require_finite, waves
 from movingfrf.response.along import CarByCar, Order, in_order, with_diagonal
 from movingfrf.response.batches import BATCH, applied, multiplied, solved
 from movingfrf.response.line import Histories, Line
 from movingfrf.response.truncation import Truncation
-from movingfrf.vehicles.dynamics import Dynamics
+from movingfrf.vehicles.dynamics import Dynamics, Numbers
 from movingfrf.vehicles.vehicle import Vehicle
 
 
@@ -70,7 +72,23 @@ class Tables:
 
     def coupled(self, roughness: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Contact forces F = (I + D G)⁻¹ D R [N] and deflections G F [m], all (*case, port, frequency)."""
+        count = len(self.frf)
+        if count <= BATCH.looped and (loops := loops_for("response.compiled", 0)):
+            # Offset by offset, each from a contact to a contact.
+            frf = handed(self.frf.reshape(count * count, -1))
+            cases = handed(roughness).reshape(-1, *roughness.shape[-2:])
+            found = loops.coupled(frf, _each_from_each(count), handed(self.stiffness), cases)
+            force, deflection = (part.reshape(roughness.shape) for part in found)
+            return force, deflection
         return self.carried(applied(self.stiffness, roughness))
+
+
+@cache
+def _each_from_each(count: int) -> IntArray:
+    """Give every contact from every contact a number."""
+    numbers = np.arange(count * count).reshape(count, count)
+    numbers.setflags(write=False)
+    return numbers
 
 
 class Response(NamedTuple):
@@ -93,6 +111,19 @@ class CoupledHistories(NamedTuple):
     deflection: Histories  # [m]
     motion: Histories  # [m or rad]
     acceleration: Histories  # [m/s² or rad/s²]
+
+
+class Distinct(NamedTuple):
+    """Distinct offsets along the guideway, and which of them is that of a contact from a contact."""
+
+    ahead: FloatArray  # (offset,) [m]
+    which: IntArray  # (contact, contact)
+
+    @classmethod
+    def of(cls, offsets: FloatArray) -> Distinct:
+        """Find those that are equal."""
+        distinct, which = np.unique(offsets, return_inverse=True)
+        return cls(distinct, which.reshape(offsets.shape))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -156,13 +187,36 @@ class System(Remembering):
 
     @property
     @remembered
-    def offsets(self) -> tuple[FloatArray, IntArray]:
-        """Distinct offsets along the guideway [m], and which of them is that of a contact from a contact."""
-        distinct, which = np.unique(self.vehicle.offsets["ahead"], return_inverse=True)
-        return distinct, which.reshape(self.ports, self.ports)
+    def _numbers(self) -> tuple[tuple[Any, ...], FloatArray, IntArray, Numbers] | None:
+        """What compiled loops take of guideway, offsets and vehicle; None where they do not do it all at once."""
+        parts = self.dynamics.parts
+        fits = isinstance(self.guideway, Track) and not self.train and self.ports <= BATCH.looped
+        vehicle = parts[0].numbers if len(parts) == 1 else None
+        return (self.seen.numbers, *self.offsets, vehicle) if fits and vehicle else None
+
+    def _require_finite(self, omega: ComplexArray, infinite: BoolArray, frf: ComplexArray) -> None:
+        if infinite.any():
+            refuse(infinite, self.speed, omega)
+        require_finite(frf, self.speed, omega)
+
+    @property
+    def offsets(self) -> Distinct:
+        """Offsets of contacts from contacts."""
+        return recalled(self.vehicle, "distinct offsets", lambda: Distinct.of(self.vehicle.offsets["ahead"]))
 
     def at(self, omega: ComplexArray) -> Tables | CarByCar:
-        """Evaluate both sides at some frequencies [rad/s]."""
+        """Evaluate both sides at some frequencies [rad/s], or take what is known of them."""
+        for known in self._foreseen:
+            if known.omega.size == omega.size and (known.omega == omega).all():
+                return known
+        return self._evaluated(omega)
+
+    def _evaluated(self, omega: ComplexArray) -> Tables | CarByCar:
+        if self._numbers and (loops := loops_for("response.compiled", 0)):
+            guideway, ahead, which, vehicle = self._numbers
+            found, dynamic, infinite = loops.tables(guideway, ahead, vehicle, handed(omega))
+            self._require_finite(omega, infinite, found)
+            return Tables(omega, found[which], dynamic)
         if not isinstance(self.guideway, Track):
             frf = self.guideway.moving_frf(speed=self.speed, omega=omega, **self.vehicle.offsets)
             return Tables(omega, np.moveaxis(frf, 0, -1), self.dynamics.stiffness(omega))
@@ -172,18 +226,19 @@ class System(Remembering):
         distinct, which = self.offsets
         return Tables(omega, found.summed(distinct)[which], self.dynamics.stiffness(omega))
 
-    def at_each(self, omegas: Sequence[ComplexArray]) -> Iterator[Tables | CarByCar]:
-        """Evaluate both sides at sets of frequencies [rad/s], as many sets in one go as a batch holds."""
-        most, waiting = BATCH.frequencies(self.entries), list(omegas)
-        while waiting:
-            count = 1
-            while count < len(waiting) and sum(omega.size for omega in waiting[: count + 1]) <= most:
-                count += 1
-            together, waiting = waiting[:count], waiting[count:]
-            whole = self.at(np.concatenate(together))
-            ends = np.cumsum([0, *(omega.size for omega in together)]).tolist()
-            for first, last in pairwise(ends):
-                yield whole.between(first, last)
+    def foresee(self, omegas: Sequence[ComplexArray]) -> None:
+        """Evaluate both sides where `at` will be asked for them, as many sets in one go as a batch holds."""
+        sizes = np.cumsum([0, *(omega.size for omega in omegas)])
+        count = int(np.searchsorted(sizes, BATCH.frequencies(self.entries), side="right")) - 1
+        if count < 2:
+            return
+        whole = self._evaluated(np.concatenate(omegas[:count]))
+        self._foreseen.extend(whole.between(first, last) for first, last in pairwise(sizes[: count + 1].tolist()))
+
+    @property
+    @remembered
+    def _foreseen(self) -> list[Tables | CarByCar]:
+        return []
 
     def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
         """Magnitudes of what the guideway adds to each output, and of all of it, per roughness under each contact.
@@ -193,10 +248,13 @@ class System(Remembering):
         force by D W and the motion by −H W.
         """
         # One case per contact under which the road is rough.
-        unit = np.broadcast_to(np.eye(self.ports, dtype=complex)[:, :, None], (self.ports, self.ports, omega.size))
+        count = self.ports
+        unit = np.zeros((count, count, omega.size), complex)
+        unit[np.arange(count), np.arange(count)] = 1.0
         force, deflection = self.at(omega).coupled(unit)
-        moved, pushed = self.dynamics.response(omega, deflection)
-        motion = moved - self.dynamics.response(omega, unit)[0]
+        answers, pushes = self.dynamics.response(omega, np.concatenate([deflection, unit]))
+        moved, pushed = answers[:count], pushes[:count]
+        motion = moved - answers[count:]
         squared = np.abs(omega) ** 2
         added = np.concatenate([pushed, deflection, moved, squared * moved], axis=1)
         whole = np.concatenate([force, deflection, motion, squared * motion], axis=1)
@@ -213,6 +271,13 @@ class System(Remembering):
         if not reach:
             motion, force = self.dynamics.response(omega, displacement)
             return Response(force, roughness[..., :0], motion)
+        if self._numbers and (loops := loops_for("response.compiled", 0)):
+            kept = truncation.taper(omega[:reach])
+            cases = handed(roughness).reshape(-1, *roughness.shape[-2:])
+            found, infinite = loops.answered(*self._numbers, handed(omega), kept, cases)
+            if infinite.any():
+                refuse(infinite, self.speed, omega)
+            return Response(*(part.reshape(*roughness.shape[:-2], *part.shape[1:]) for part in found))
         tables = self.at(omega[:reach]).admitted(truncation)
         solved_force, deflection = tables.coupled(roughness[..., :reach])
         displacement[..., :reach] += deflection

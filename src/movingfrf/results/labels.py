@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.values import Listed
@@ -104,10 +104,14 @@ RANDOM_QUANTITIES = {
 }
 
 
+# Between the unit for degrees of freedom in m and that for those in rad.
+OF_EITHER = " or "
+
+
 def _random_labels(name: str, place: str, units: tuple[str, ...], words: str) -> dict[str, Label]:
     """Spectral density and statistics of one quantity."""
-    unit = " or ".join(units)
-    squared = " or ".join(f"({unit})2/Hz" if "/" in unit else f"{unit}2/Hz" for unit in units)
+    unit = OF_EITHER.join(units)
+    squared = OF_EITHER.join(f"({unit})2/Hz" if "/" in unit else f"{unit}2/Hz" for unit in units)
     return {
         f"{name}_density": Label(("frequency", place), squared, f"one-sided spectral density of the {words}"),
         f"{name}_rms": Label((place,), unit, f"root mean square of the {words}"),
@@ -234,7 +238,56 @@ def turned(values: Values) -> Values:
     return values.T
 
 
-def labelled(values: Mapping[str, ArrayLike], attributes: Mapping[str, str | float | int]) -> xr.Dataset:
+class Ready(NamedTuple):
+    """Variables of a result with their labels, and the indexes of those along its dimensions."""
+
+    variables: dict[str, xr.Variable]
+    indexes: dict[str, PandasIndex]
+
+
+def ready(kind: str, values: Mapping[str, ArrayLike], known: Ready | None = None) -> Ready:
+    """Put labels on arrays.
+
+    Parameters
+    ----------
+    kind : str
+        Of the result: key of `SCHEMAS`.
+    values : mapping of str to array_like
+        Arrays by their name in the schema.
+    known : Ready, optional
+        Other variables of the result.
+
+    Returns
+    -------
+    Ready
+        These alone.
+    """
+    import xarray as xr
+    from xarray.indexes import PandasIndex
+
+    schema, found = SCHEMAS[kind], Ready({}, {})
+    dof_units = known.variables.get("dof_unit", ("",)) if known else values.get("dof_unit", ("",))
+    of_dofs = {str(unit) for unit in np.asarray(dof_units)}
+    for name, given in values.items():
+        label, value = schema[name], np.asarray(given)
+        either = OF_EITHER in label.units
+        units = {unit_of(label.units, dof_unit) for dof_unit in of_dofs} if either else {label.units}
+        said = {"units": units.pop()} if len(units) == 1 else {"comment": f"in {label.units}, as dof_unit says"}
+        # Of a coordinate nothing is missing.
+        encoding = {"_FillValue": None} if label.coordinate else None
+        # What is an array needs no second look.
+        variable = xr.Variable(label.dims, value, {**said, "long_name": label.long_name}, encoding, fastpath=True)
+        if label.dims == (name,):
+            # Made here: xarray would find out that they are needed, in twice the time.
+            found.indexes[name] = PandasIndex(value, name, coord_dtype=value.dtype)
+            variable = found.indexes[name].create_variables({name: variable})[name]
+        found.variables[name] = variable
+    return found
+
+
+def labelled(
+    values: Mapping[str, ArrayLike], attributes: Mapping[str, str | float | int], known: Ready | None = None
+) -> xr.Dataset:
     """Make the Dataset of a result.
 
     Parameters
@@ -243,6 +296,8 @@ def labelled(values: Mapping[str, ArrayLike], attributes: Mapping[str, str | flo
         Arrays by their name in the schema of the result's kind.
     attributes : mapping of str to str, float or int
         What `attributes` returned.
+    known : Ready, optional
+        Variables that have their labels already.
 
     Returns
     -------
@@ -252,34 +307,25 @@ def labelled(values: Mapping[str, ArrayLike], attributes: Mapping[str, str | flo
         of one unit.
     """
     import xarray as xr
-    from xarray.indexes import PandasIndex
 
-    schema = SCHEMAS[str(attributes["kind"])]
-    arrays = {name: np.asarray(value) for name, value in values.items()}
-    of_dofs = {str(unit) for unit in np.asarray(values.get("dof_unit", ()))}
-    data: dict[str, xr.Variable] = {}
-    coordinates: dict[str, xr.Variable] = {}
-    indexes: dict[str, PandasIndex] = {}
-    for name, value in arrays.items():
-        label = schema[name]
-        units = {unit_of(label.units, dof_unit) for dof_unit in of_dofs or {""}}
-        said = {"units": units.pop()} if len(units) == 1 else {"comment": f"in {label.units}, as dof_unit says"}
-        variable = xr.Variable(label.dims, value, {**said, "long_name": label.long_name})
-        if label.dims == (name,):
-            # Made here: xarray would find out that they are needed, in twice the time.
-            indexes[name] = PandasIndex(value, name, coord_dtype=value.dtype)
-            variable = indexes[name].create_variables({name: variable})[name]
-        if label.coordinate:
-            variable.encoding["_FillValue"] = None  # of a coordinate nothing is missing
-        (coordinates if label.coordinate else data)[name] = variable
-    kept = {"Conventions": "CF-1.11"} if _keeps_cf(arrays, indexes) else {}
-    return xr.Dataset(data, xr.Coordinates(coordinates, indexes), {**attributes, **kept})
+    kind = str(attributes["kind"])
+    schema, (variables, indexes) = SCHEMAS[kind], ready(kind, values, known)
+    if known:
+        variables, indexes = {**variables, **known.variables}, {**indexes, **known.indexes}
+    kept = {"Conventions": "CF-1.11"} if _keeps_cf(variables, indexes) else {}
+    # Variables that are ready need not be merged, which takes longer: coordinates, some of which become data.
+    data = [name for name in variables if not schema[name].coordinate]
+    coordinates = [name for name in variables if schema[name].coordinate]
+    listed = {name: variables[name] for name in (*data, *coordinates)}
+    result = xr.Coordinates(listed, indexes).to_dataset().reset_coords(data)
+    result.attrs = {**attributes, **kept}
+    return result
 
 
-def _keeps_cf(arrays: Mapping[str, NDArray[Any]], along: Iterable[str]) -> bool:
+def _keeps_cf(variables: Mapping[str, xr.Variable], along: Iterable[str]) -> bool:
     """Whether what the CF conventions ask of numbers is so: they are real, and those along a dimension in order."""
-    steps = [np.diff(arrays[name]) for name in along if arrays[name].dtype.kind in "if"]
-    real = all(array.dtype.kind != "c" for array in arrays.values())
+    steps = [np.diff(variables[name].values) for name in along if variables[name].dtype.kind in "if"]
+    real = all(variable.dtype.kind != "c" for variable in variables.values())
     return real and all((step > 0).all() or (step < 0).all() for step in steps)
 
 
@@ -291,7 +337,7 @@ def unit_of(units: str, dof_unit: str = "") -> str:
     >>> unit_of("m/s2 or rad/s2", "rad")
     'rad/s2'
     """
-    return units.split(" or ")[-1 if dof_unit == "rad" else 0]
+    return units.split(OF_EITHER)[-1 if dof_unit == "rad" else 0]
 
 
 def resolved(result: xr.Dataset) -> xr.Dataset:

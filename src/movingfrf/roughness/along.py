@@ -199,7 +199,9 @@ class Along(NamedTuple):
         """Root mean square of the slopes about the grade at the stations of a stretch [m/m]."""
         begin, end = np.searchsorted(self.spline.x[:-1], [first, last]).tolist()
         slopes = self.spline.c[2, min(begin, self.spline.c.shape[1] - 1) : max(end, begin + 1)]
-        square = float(slopes @ slopes) / slopes.size - 2.0 * self.grade * float(slopes.mean()) + self.grade**2
+        square = float(slopes @ slopes) / slopes.size
+        if self.grade:
+            square += self.grade * (self.grade - 2.0 * float(slopes.mean()))
         return math.sqrt(max(square, 0.0))
 
     def between(self, first: float, last: float) -> Piecewise:

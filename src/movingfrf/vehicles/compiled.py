@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.loops import loop
+from movingfrf.vehicles.dynamics import Numbers
 
 
 @loop
@@ -45,8 +46,9 @@ def _multiply(factor, count, into):
 
 
 @loop
-def stiffness(omega, poles, carried, direct, together):
+def stiffness(vehicle, omega):
     """Dynamic stiffness at the contacts of a part; as `Part.stiffness`."""
+    poles, carried, direct, _, _, _, _, together = vehicle
     powers, entries, modes = carried.shape
     contacts = direct.shape[1]
     found = np.empty((entries, omega.size), np.complex128)
@@ -69,8 +71,9 @@ def stiffness(omega, poles, carried, direct, together):
 
 
 @loop
-def response(omega, displacement, poles, entered, moving, prescribed, pushing, direct, together):
+def response(vehicle, omega, displacement):
     """Motion and contact force of a part for a displacement; as `Part.response`."""
+    poles, _, direct, entered, moving, pushing, prescribed, together = vehicle
     cases, contacts, frequencies = displacement.shape
     powers, modes, dofs = len(entered), poles.size, len(moving)
     moved = np.empty((cases, dofs, frequencies), np.complex128)
@@ -123,6 +126,6 @@ def ready():
     coefficients, moving, prescribed = np.ones((1, 1, 1), complex), np.ones((1, 1), complex), np.zeros((1, 0))
     for known in (poles, direct, coefficients, moving, prescribed):
         known.setflags(write=False)
-    stiffness(omega, poles, coefficients, direct, 1)
-    below = np.ones((1, 1, 1), complex)
-    response(omega, below, poles, coefficients, moving, prescribed, coefficients, direct, 1)
+    vehicle = Numbers(poles, coefficients, direct, coefficients, moving, coefficients, prescribed, 1)
+    stiffness(vehicle, omega)
+    response(vehicle, omega, np.ones((1, 1, 1), complex))

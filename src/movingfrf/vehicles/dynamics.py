@@ -17,13 +17,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg
 
-from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, handed
 from movingfrf._basics.compiling import loops_for
 from movingfrf._basics.remembered import Remembering, remembered
 
@@ -138,15 +137,17 @@ def split(contact_map: FloatArray, rigid: BoolArray) -> Split | None:
     return Split(free, prescribed, kept)
 
 
-class Stacked(NamedTuple):
+class Numbers(NamedTuple):
     """What compiled loops take of a part: all powers of iω up to the highest in one array."""
 
-    entered: ComplexArray  # (power, mode, contact)
+    poles: ComplexArray  # (mode,)
     carried: ComplexArray  # (power, contact², mode)
+    direct: FloatArray  # E (power, contact, contact)
+    entered: ComplexArray  # (power, mode, contact)
     moving: ComplexArray  # (dof, mode), what of a mode moves
     pushing: ComplexArray  # (power, contact, mode), what of it presses
     prescribed: FloatArray  # S (dof, contact), without columns if it is zero
-    direct: FloatArray  # E (power, contact, contact)
+    together: int  # frequencies at a time
 
 
 class Modes(NamedTuple):
@@ -220,13 +221,9 @@ class Part(Remembering):
 
     def response(self, omega: ComplexArray, displacement: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Motion (*case, dof, frequency) and contact force for a displacement, both (*case, contact, frequency)."""
-        if self.modes is not None and (loops := self._compiled(omega)):
-            entered, _, moving, pushing, prescribed, direct = self._stacked
-            omega, cases = (np.require(part, complex, ("C", "W")) for part in (omega, displacement))
-            cases = cases.reshape(-1, *displacement.shape[-2:])
-            found = loops.response(
-                omega, cases, self.modes.poles, entered, moving, prescribed, pushing, direct, SOLUTION.together
-            )
+        if self.numbers and (loops := loops_for("vehicles.compiled", self.numbers.poles.size * omega.size)):
+            cases = handed(displacement).reshape(-1, *displacement.shape[-2:])
+            found = loops.response(self.numbers, handed(omega), cases)
             motion, force = (part.reshape(*displacement.shape[:-2], *part.shape[1:]) for part in found)
             return motion, force
         free = self._free(omega, displacement)
@@ -239,27 +236,26 @@ class Part(Remembering):
         force -= self.direct.times(omega, displacement)
         return moved, force
 
-    def _compiled(self, omega: ComplexArray) -> ModuleType | None:
-        """Give compiled loops where they gain on BLAS: of few modes."""
-        modes = self.modes.poles.size if self.modes else 0
-        return loops_for("vehicles.compiled", modes * omega.size) if modes <= SOLUTION.few else None
-
     @property
     @remembered
-    def _stacked(self) -> Stacked:
+    def numbers(self) -> Numbers | None:
+        """What compiled loops take, where they gain on BLAS: of few modes."""
         modes = self.modes
-        assert modes is not None
+        if modes is None or modes.poles.size > SOLUTION.few:
+            return None
         contacts, pushing = len(self.contacts), [part.T @ modes.shapes for part in self.entry]
         powers = 1 + max(power for power, _ in (*self.entry.terms(), *self.direct.terms()))
         carried = range(max(powers, *(power + 1 for power, part in enumerate(modes.carried) if part is not None)))
         nothing = np.zeros((modes.poles.size, contacts)), np.zeros((contacts**2, modes.poles.size))
-        return Stacked(
-            np.array([nothing[0] if part is None else part for part in modes.entered[:powers]], complex),
+        return Numbers(
+            modes.poles,
             np.array([nothing[1] if modes.carried[n] is None else modes.carried[n] for n in carried], complex),
+            np.array([self.direct[power] if power < 3 else 0.0 * self.direct[0] for power in carried]),
+            np.array([nothing[0] if part is None else part for part in modes.entered[:powers]], complex),
             np.ascontiguousarray(self.motion.free @ modes.shapes),
             np.array(pushing[:powers], complex),
             self.motion.prescribed if self.motion.prescribed.any() else self.motion.prescribed[:, :0],
-            np.array([self.direct[power] if power < 3 else 0.0 * self.direct[0] for power in carried]),
+            SOLUTION.together,
         )
 
     def _free(self, omega: ComplexArray, displacement: ComplexArray) -> ComplexArray:
@@ -280,10 +276,8 @@ class Part(Remembering):
 
     def stiffness(self, omega: ComplexArray) -> ComplexArray:
         """Dynamic stiffness D = E − Hᵀ P⁻¹ H at its contacts, shape (contact, contact, frequency)."""
-        if self.modes is not None and (loops := self._compiled(omega)):
-            _, carried, _, _, _, kept = self._stacked
-            count, omega = len(self.contacts), np.require(omega, complex, ("C", "W"))
-            found = loops.stiffness(omega, self.modes.poles, carried, kept, SOLUTION.together)
+        if self.numbers and (loops := loops_for("vehicles.compiled", self.numbers.poles.size * omega.size)):
+            count, found = len(self.contacts), loops.stiffness(self.numbers, handed(omega))
             return found.reshape(count, count, omega.size)
         direct = self.direct.at(omega)
         if not len(self.own.constant):

@@ -173,6 +173,7 @@ class Vehicle(Remembering, Value):
         return Standing([contact.name for contact in self.contacts], "rail" if self.on_rails else "road")
 
     @property
+    @remembered
     def coordinates(self) -> dict[str, ArrayLike]:
         """Coordinates of a result by their names in the schema: contacts and degrees of freedom."""
         return {
