@@ -89,7 +89,7 @@ FAULTS = [
     ),
     Fault("window that grows too much", "response/line.py", "growth: float = 3e3", "growth: float = 1e9"),
     Fault("cut that rings on", "response/line.py", "within: float = 0.2", "within: float = 1e9"),
-    Fault("held contacts for free ones", "response/line.py", "apart: float = 1 / 4", "apart: float = 0.0"),
+    Fault("held contacts for free ones", "response/line.py", "apart: float = 1 / 3", "apart: float = 0.0"),
     Fault(
         "octave from zero on",
         "response/accuracy.py",

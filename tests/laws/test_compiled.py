@@ -11,7 +11,9 @@ import pytest
 import movingfrf as mf
 from movingfrf._basics.compiling import PATIENCE, compiling, loops_for, numba_is_there
 from movingfrf._basics.spline import cubic
-from movingfrf.response.system import Tables
+from movingfrf.response.influence import influence
+from movingfrf.response.line import Line
+from movingfrf.response.system import System, Tables
 from tests.analytic.vehicle_parts import RIGID
 from tests.helpers import DAMPED, UNDAMPED, VEHICLES
 
@@ -116,6 +118,26 @@ def test_contacts_on_a_guideway(contacts):
     if contacts > 1:
         one, other = both(lambda: tables.coupled(rough))
         assert off(one[0], other[0]) < 1e-9
+
+
+@pytest.mark.parametrize("vehicle", ["half_truck", "quarter_truck", "full_truck", "bogie", "plank"])
+def test_what_bands_hold(vehicle):
+    """Gains, bounds of energies, and whole energies, of several cases, one of which has little of some."""
+    road = DAMPED["euler_bernoulli_winkler"]
+
+    def found():
+        system = System(guideway=road, vehicle=(VEHICLES | RIGID)[vehicle], speed=15.0)
+        line = Line(samples=1000, time_step=2e-3, points=4000)
+        energy = np.random.default_rng(2).exponential(size=(3, system.ports, line.size)) ** 4
+        energy[1, 0] = 0.0
+        return influence(system, line, energy, 70.0, 1e-3)
+
+    one, other = both(found)
+    assert (one.starts == other.starts).all()
+    np.testing.assert_allclose(one.size, other.size, rtol=1e-9)
+    for mine, others in ((one.added, other.added), (one.whole, other.whole)):
+        np.testing.assert_allclose(mine.gain, others.gain, rtol=1e-6, atol=1e-12 * others.gain.max())
+        np.testing.assert_allclose(mine.beyond, others.beyond, rtol=1e-6, atol=1e-12)
 
 
 @pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")

@@ -9,6 +9,9 @@ import numpy as np
 from movingfrf._basics.loops import loop
 from movingfrf.guideways.roots import ROOTS
 
+# Steps from frequency to frequency that grow by more than this factor tell nothing of how roots go on [1.5 to 4].
+UNEVEN = 2.0
+
 
 @loop
 def squared(value):
@@ -129,7 +132,7 @@ def waves(guideway, omega):
     denominator, numerator = np.empty(degree + 1, np.complex128), np.empty(below.shape[0], np.complex128)
     derivative, others = np.empty(degree, np.complex128), np.empty(degree, np.complex128)
     magnitude, change = np.empty(size.shape[0]), np.empty(by_omega.shape[0], np.complex128)
-    roots, before = np.empty(degree, np.complex128), np.empty((2, degree), np.complex128)
+    roots, before = np.empty(degree, np.complex128), np.zeros((2, degree), np.complex128)
     for at in range(count):
         s = complex(-omega[at].imag, omega[at].real)
         _at(above, s, denominator)
@@ -138,20 +141,22 @@ def waves(guideway, omega):
         if at == 0:
             _on_circles(denominator, roots)
         else:
-            # Roots go on as they have over three frequencies before, where these lie evenly; else over one or two.
-            gap = omega[at].real - omega[at - 1].real
-            run = 0
-            while (
-                run < min(at - 1, 2)
-                and abs(omega[at - 1 - run].real - omega[at - 2 - run].real - gap) <= 1e-3 * gap
-            ):
-                run += 1
+            # Roots go on as they have over the last three frequencies, or two, unless these lie too unevenly.
+            ahead, last, far = omega[at].real - omega[at - 1].real, 0.0, 0.0
+            if at > 1:
+                last = omega[at - 1].real - omega[at - 2].real
+            if at > 2:
+                far = omega[at - 2].real - omega[at - 3].real
+            linear, bending = 0.0, 0.0
+            if 0.0 < ahead < UNEVEN * last:
+                linear = ahead / last
+                if 0.0 < last < UNEVEN * far:
+                    share = ahead * (ahead + last) / (last + far)
+                    linear += share / last
+                    bending = share / far
             for n in range(degree):
                 now = roots[n]
-                if run == 2:
-                    roots[n] += 2.0 * (now - before[0, n]) - (before[0, n] - before[1, n])
-                elif run == 1:
-                    roots[n] += now - before[0, n]
+                roots[n] += linear * (now - before[0, n]) - bending * (before[0, n] - before[1, n])
                 before[1, n] = before[0, n]
                 before[0, n] = now
         settled = _settle(denominator, roots, others, search)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from movingfrf._basics.loops import loop
@@ -68,6 +70,41 @@ def coupled(frf, which, dynamic, roughness):
 
 
 @loop
+def turned(frf, dynamic, largest_change):
+    """Angle by which det(I + D G) of one contact or two turns along a path; as `stability._turned`.
+
+    Of the path, ends and middles of intervals in turn. NaN where an interval needs a closer look.
+    """
+    contacts, frequencies = dynamic.shape[0], dynamic.shape[2]
+    here, before = np.empty((2, 2), np.complex128), np.empty((2, 2), np.complex128)
+    angle, limit = 0.0, largest_change * largest_change
+    for k in range(frequencies):
+        for i in range(contacts):
+            for j in range(contacts):
+                before[i, j] = here[i, j]
+                total = 1.0 + 0j if i == j else 0j
+                for m in range(contacts):
+                    total += dynamic[i, m, k] * frf[m, j, k]
+                here[i, j] = total
+        if k == 0:
+            continue
+        if contacts == 1:
+            factor = over(here[0, 0], before[0, 0])
+            other = 1.0 + 0j
+        else:
+            # Eigenvalues of X₁⁻¹X₂: half of its trace and its determinant.
+            determinant = before[0, 0] * before[1, 1] - before[0, 1] * before[1, 0]
+            half = before[1, 1] * here[0, 0] - before[0, 1] * here[1, 0]
+            half = 0.5 * over(half + before[0, 0] * here[1, 1] - before[1, 0] * here[0, 1], determinant)
+            root = np.sqrt(half * half - over(here[0, 0] * here[1, 1] - here[0, 1] * here[1, 0], determinant))
+            factor, other = half + root, half - root
+        if not (squared(factor - 1.0) <= limit and squared(other - 1.0) <= limit):
+            return np.nan
+        angle += math.atan2(factor.imag, factor.real) + math.atan2(other.imag, other.real)
+    return angle
+
+
+@loop
 def tables(guideway, ahead, vehicle, omega):
     """Give the moving FRF at distinct offsets, the dynamic stiffness, and where a response is infinite."""
     direct = vehicle[2]
@@ -100,6 +137,68 @@ def answered(guideway, ahead, which, vehicle, omega, kept, roughness):
     return (force, deflection, motion), infinite
 
 
+@loop
+def per_unit(frf, which, dynamic, vehicle, omega):
+    """Size of what the guideway adds to each output, then of all of it, per unit; as `System.per_unit`."""
+    contacts, frequencies = dynamic.shape[0], omega.size
+    # Contact by contact under which the road is rough; then the same on a rigid road, whose motion is −H.
+    unit = np.zeros((2 * contacts, contacts, frequencies), np.complex128)
+    for case in range(contacts):
+        unit[case, case] = 1.0
+        unit[contacts + case, case] = 1.0
+    force, deflection = coupled(frf, which, dynamic, unit[:contacts])
+    unit[:contacts] = deflection
+    moved, pushed = response(vehicle, omega, unit)
+    dofs = moved.shape[1]
+    sizes = np.empty((2, contacts, 2 * contacts + 2 * dofs, frequencies))
+    for case in range(contacts):
+        for i in range(contacts):
+            for k in range(frequencies):
+                yields = abs(deflection[case, i, k])
+                sizes[0, case, i, k], sizes[1, case, i, k] = abs(pushed[case, i, k]), abs(force[case, i, k])
+                sizes[0, case, contacts + i, k], sizes[1, case, contacts + i, k] = yields, yields
+        for dof in range(dofs):
+            row = 2 * contacts + dof
+            for k in range(frequencies):
+                added, held = moved[case, dof, k], moved[contacts + case, dof, k]
+                square = squared(omega[k])
+                sizes[0, case, row, k], sizes[1, case, row, k] = abs(added), abs(added - held)
+                sizes[0, case, row + dofs, k] = square * sizes[0, case, row, k]
+                sizes[1, case, row + dofs, k] = square * sizes[1, case, row, k]
+    return sizes
+
+
+@loop
+def shares(sizes, power, kinds, alike):
+    """Bounds of energies from each band on, as shares, and energies of which; as `influence.influence`."""
+    sides, ports, outputs, bands = sizes.shape
+    cases = power.shape[0]
+    beyond, whole = np.zeros((sides, cases, outputs, bands + 1)), np.zeros((cases, outputs))
+    for case in range(cases):
+        for output in range(outputs):
+            for k in range(bands):
+                for port in range(ports):
+                    whole[case, output] += sizes[1, port, output, k] ** 2 * power[case, port, k]
+        begin = 0
+        for count in kinds:
+            largest = 0.0
+            for output in range(begin, begin + count):
+                largest = max(largest, whole[case, output])
+            for output in range(begin, begin + count):
+                whole[case, output] = max(whole[case, output], alike * alike * largest)
+            begin += count
+        for side in range(sides):
+            for output in range(outputs):
+                size = whole[case, output]
+                for k in range(bands - 1, -1, -1):
+                    most = 0.0
+                    for port in range(ports):
+                        most += sizes[side, port, output, k] * math.sqrt(power[case, port, k])
+                    share = most * most / size if size > 0.0 else 0.0
+                    beyond[side, case, output, k] = beyond[side, case, output, k + 1] + share
+    return beyond, whole
+
+
 def ready():
     """Compile what is here, or load it, for arrays as they are handed over."""
     above, below, by_omega = np.array([[1, 1], [0, 0], [1, 0j]]), np.array([[1 + 0j]]), np.array([[0j]])
@@ -112,5 +211,7 @@ def ready():
     vehicle = Numbers(poles, known, direct, known, moving, known, prescribed, 1)
     rough = np.ones((1, 1, 1), complex)
     frf, dynamic, _ = tables(guideway, ahead, vehicle, omega)
+    turned(frf[which], dynamic, 0.9)
+    shares(per_unit(frf, which, dynamic, vehicle, omega), np.ones((1, 1, 1)), np.ones(4, int), 0.1)
     coupled(frf, which, dynamic, rough)
     answered(guideway, ahead, which, vehicle, omega, np.ones(1), rough)

@@ -13,6 +13,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
+from movingfrf._basics.compiling import loops_for
 from movingfrf.response.batches import BATCH
 from movingfrf.response.line import Line
 from movingfrf.response.truncation import TRUNCATION, Truncation
@@ -31,8 +32,8 @@ class Sized(Protocol):
         """How many outputs there are of each kind, one kind after the other."""
         ...
 
-    def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
-        """Say what the guideway adds to each output, and its size, per unit: (port, output, frequency)."""
+    def per_unit(self, omega: ComplexArray) -> FloatArray:
+        """Say what the guideway adds to each output, then its size, per unit: (2, port, output, frequency)."""
         ...
 
 
@@ -41,13 +42,6 @@ class Share(NamedTuple):
 
     gain: FloatArray  # (port, output, band) magnitude per unit of what drives that port
     beyond: FloatArray  # (case, output, band + 1) upper bound of its energy from the beginning of each band on
-
-    @classmethod
-    def of(cls, gain: FloatArray, energy: FloatArray) -> Share:
-        """Add up energies, (case, output, band), from the end on."""
-        beyond = np.zeros((*energy.shape[:2], energy.shape[2] + 1))
-        np.cumsum(energy[:, :, ::-1], axis=2, out=beyond[:, :, -2::-1])
-        return cls(gain, beyond)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -188,25 +182,35 @@ def influence(system: Sized, line: Line, energy: FloatArray, truncation: float |
     omega = line.omega(middles(starts, line.size))
     cases = energy.reshape(-1, *energy.shape[-2:])
     power = np.add.reduceat(cases, starts, axis=2)
-    amplitude = np.sqrt(power)
-    # Gains of many contacts are many; half of the digits tell what is negligible.
-    outputs = sum(system.kinds)
-    gains = [np.empty((cases.shape[1], outputs, omega.size), np.float32) for _ in ("added", "whole")]
-    energies = [np.empty((len(cases), outputs, omega.size)) for _ in gains]
-    total = np.zeros((len(cases), outputs))
+    if system.ports <= BATCH.looped and (loops := loops_for("response.compiled", 0)):
+        gains = system.per_unit(omega)
+        beyond, size = loops.shares(gains, power, np.array(system.kinds), alike)
+    else:
+        gains, beyond, size = _shares(system, omega, power, alike)
+    added, whole = map(Share, gains, beyond)
+    return Influence(starts=starts, added=added, whole=whole, size=size, lines=line.size)
+
+
+def _shares(
+    system: Sized, omega: ComplexArray, power: FloatArray, alike: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Give gains, bounds of energies from each band on, and energies of which these are shares."""
+    amplitude, outputs = np.sqrt(power), sum(system.kinds)
+    # What the guideway adds, then all of it. Gains of many contacts are many; half of the digits tell what is
+    # negligible.
+    gains = np.empty((2, power.shape[1], outputs, omega.size), np.float32)
+    energies, total = np.empty((2, len(power), outputs, omega.size)), np.zeros((len(power), outputs))
     for here in BATCH.some(omega.size, system.ports**2):
         found = system.per_unit(omega[here])
-        for gain, each, carried in zip(gains, found, energies, strict=True):
-            gain[..., here] = each
-            np.square(np.einsum("cob,ncb->nob", each, amplitude[..., here]), out=carried[..., here])
-        total += np.einsum("cob,ncb->no", np.square(found[-1]), power[..., here])
+        gains[..., here] = found
+        np.square(np.einsum("scob,ncb->snob", found, amplitude[..., here]), out=energies[..., here])
+        total += np.einsum("cob,ncb->no", np.square(found[1]), power[..., here])
     begins = np.cumsum((0, *system.kinds[:-1]))
     least = np.maximum.reduceat(total, begins, axis=1)
     size = np.maximum(total, alike**2 * np.repeat(least, system.kinds, axis=1))
-    added, whole = (
-        Share.of(gain, quotient(carried, size[:, :, None])) for gain, carried in zip(gains, energies, strict=True)
-    )
-    return Influence(starts=starts, added=added, whole=whole, size=size, lines=line.size)
+    beyond = np.zeros((*energies.shape[:-1], omega.size + 1))
+    np.cumsum(quotient(energies, size[:, :, None])[..., ::-1], axis=-1, out=beyond[..., -2::-1])
+    return gains, beyond, size
 
 
 def quotient(part: FloatArray, whole: FloatArray) -> FloatArray:

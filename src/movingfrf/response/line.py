@@ -35,7 +35,7 @@ class Transform:
     rings: float = 12.0  # [8 to 20]
     # The padding is so much of a record at least, or so long: on a guideway motion may die away more slowly than it
     # would on held contacts.
-    apart: float = 1 / 4  # [1/5 to 1]
+    apart: float = 1 / 3  # [1/4 to 1]
     longest: float = 30.0  # [s; 10 to 300]
     # And so many times the record at most, but for the fading.
     most: float = 50.0  # [20 to 100]
@@ -106,7 +106,7 @@ class Line(Remembering):
 
     X(ω) = ∫ x(t) e^{−iωt} dt, evaluated along ω − iη (exponential window, Kausel and Roësset 1992). The discrete
     transform implies that all repeats itself. With η as large as the end of the record allows, a padding of 0.6 of
-    the record damps that to `TRANSFORM.wrap_around`; a quarter where motion dies away; more beside a cut.
+    the record damps that to `TRANSFORM.wrap_around`; a third where motion dies away; more beside a cut.
     What drives a system is asked for in steps of its own, finer or coarser than those of the record.
 
     Parameters
@@ -370,36 +370,40 @@ class Line(Remembering):
         samples, padded, step = self.samples * finer, self.padded * finer, self.time_step / finer
         shapes = [spectra.shape[:-1] for spectra, _ in asked]
         found = [Histories(np.zeros((*shape, samples)), np.zeros(shape)) for shape in shapes]
-        rows = [
-            (channel, derivative, values, wrapped)
-            for (spectra, derivative), histories in zip(asked, found, strict=True)
+        # Channels of all of them in a row, those of each from the number on at which they begin.
+        kinds = [
+            (spectra.reshape(-1, spectra.shape[-1]), derivative, values.reshape(-1, samples), wrapped.reshape(-1))
+            for (spectra, derivative), (values, wrapped) in zip(asked, found, strict=True)
             if spectra.shape[-1]
-            for channel, values, wrapped in zip(
-                spectra.reshape(-1, spectra.shape[-1]),
-                histories.values.reshape(-1, samples),
-                histories.wrapped.reshape(-1, 1),
-                strict=True,
-            )
         ]
-        longest = max((channel.size for channel, *_ in rows), default=0)
+        begins = np.cumsum([0, *(len(channels) for channels, *_ in kinds)]).tolist()
+        longest = max((channels.shape[-1] for channels, *_ in kinds), default=0)
         s = 1j * self.omega(slice(longest))
         factors = {derivative: s**derivative for _, derivative in asked if derivative}
         growth = np.exp(self.decay * step * np.arange(samples)) / step
         # Not at the very end of the padding, where the ripple lies that precedes a jump at t = 0.
         last = max((padded - samples) // 8, 1)
         together = TRANSFORM.rows(padded)
-        for first in range(0, len(rows), together):
-            block = np.zeros((len(rows[first : first + together]), longest), complex)
-            for (channel, derivative, _, _), there in zip(rows[first : first + together], block, strict=True):
+        for first in range(0, begins[-1], together):
+            block = np.zeros((min(together, begins[-1] - first), longest), complex)
+            here = [
+                (kind, slice(max(first - begin, 0), first + len(block) - begin), max(begin - first, 0))
+                for kind, begin in zip(kinds, begins, strict=False)
+                if begin < first + len(block) and first < begin + len(kind[0])
+            ]
+            for (channels, derivative, _, _), some, row in here:
+                part = channels[some]
+                there = block[row : row + len(part), : part.shape[-1]]
                 if derivative:
-                    np.multiply(channel, factors[derivative][: channel.size], out=there[: channel.size])
+                    np.multiply(part, factors[derivative][: part.shape[-1]], out=there)
                 else:
-                    there[: channel.size] = channel
+                    there[:] = part
             periodic = scipy.fft.irfft(folded(block, padded), padded, overwrite_x=True)
             ends = np.abs(periodic[:, -3 * last : -2 * last]).max(axis=1) / step
-            for row, one, end in zip(rows[first : first + together], periodic, ends, strict=True):
-                np.multiply(one[:samples], growth, out=row[2])
-                row[3][...] = end
+            for (_, _, values, wrapped), some, row in here:
+                count = len(values[some])
+                np.multiply(periodic[row : row + count, :samples], growth, out=values[some])
+                wrapped[some] = ends[row : row + count]
         return found
 
     def from_on(self, first: int, size: int) -> FloatArray:

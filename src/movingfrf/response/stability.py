@@ -8,8 +8,9 @@ from typing import cast
 
 import numpy as np
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray, handed
 from movingfrf._basics.checks import SolveError
+from movingfrf._basics.compiling import loops_for
 from movingfrf.response.along import CarByCar, determinants
 from movingfrf.response.batches import BATCH
 from movingfrf.response.system import System, Tables
@@ -153,6 +154,10 @@ def _turned(system: System, along_axis: Tables | CarByCar) -> float:
     """Angle by which the determinant turns along a stretch of the path [rad]."""
     if isinstance(along_axis, CarByCar):
         return _turned_with_slopes(system, along_axis.omega)
+    if len(along_axis.frf) <= 2 and (loops := loops_for("response.compiled", 0)):
+        turned = loops.turned(*map(handed, (along_axis.frf, along_axis.stiffness)), CONTOUR.largest_change)
+        if np.isfinite(turned):
+            return float(turned)
     path, matrices = along_axis.omega, _stacked(along_axis)
     first, middle, last = path[:-1:2], path[1::2], path[2::2]
     at_first, at_middle, at_last = matrices[:-1:2], matrices[1::2], matrices[2::2]

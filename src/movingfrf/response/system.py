@@ -240,25 +240,31 @@ class System(Remembering):
     def _foreseen(self) -> list[Tables | CarByCar]:
         return []
 
-    def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
-        """Magnitudes of what the guideway adds to each output, and of all of it, per roughness under each contact.
+    def per_unit(self, omega: ComplexArray) -> FloatArray:
+        """Magnitudes of what the guideway adds to each output, then of all of it, per roughness under each contact.
 
-        Outputs are force and deflection at each contact, motion and acceleration of each degree of freedom; shapes
-        (contact, output, frequency). A rigid road changes the displacement under the contacts by −W, hence the
+        Outputs are force and deflection at each contact, motion and acceleration of each degree of freedom; shape
+        (2, contact, output, frequency). A rigid road changes the displacement under the contacts by −W, hence the
         force by D W and the motion by −H W.
         """
+        count, tables = self.ports, self.at(omega)
+        if self._numbers and isinstance(tables, Tables) and (loops := loops_for("response.compiled", 0)):
+            vehicle = self._numbers[-1]
+            frf = handed(tables.frf.reshape(count * count, -1))
+            return loops.per_unit(frf, _each_from_each(count), handed(tables.stiffness), vehicle, handed(omega))
         # One case per contact under which the road is rough.
-        count = self.ports
         unit = np.zeros((count, count, omega.size), complex)
         unit[np.arange(count), np.arange(count)] = 1.0
-        force, deflection = self.at(omega).coupled(unit)
+        force, deflection = tables.coupled(unit)
         answers, pushes = self.dynamics.response(omega, np.concatenate([deflection, unit]))
-        moved, pushed = answers[:count], pushes[:count]
+        moved, pushed, squared = answers[:count], pushes[:count], np.abs(omega) ** 2
         motion = moved - answers[count:]
-        squared = np.abs(omega) ** 2
-        added = np.concatenate([pushed, deflection, moved, squared * moved], axis=1)
-        whole = np.concatenate([force, deflection, motion, squared * motion], axis=1)
-        return np.abs(added), np.abs(whole)
+        ends, sizes = np.cumsum(self.kinds).tolist(), np.empty((2, count, sum(self.kinds), omega.size))
+        for found, outputs in zip(sizes, ((pushed, deflection, moved), (force, deflection, motion)), strict=True):
+            for output, begin, end in zip(outputs, (0, *ends), ends, strict=False):
+                np.abs(output, out=found[:, begin:end])
+            np.multiply(squared, found[:, ends[1] : ends[2]], out=found[:, ends[2] :])
+        return sizes
 
     def answer(self, omega: ComplexArray, roughness: ComplexArray, truncation: Truncation) -> Response:
         """Solve for the response to roughness [m], shape (*case, contact, frequency), at ascending frequencies.
@@ -332,10 +338,10 @@ class Prescribed:
         """Points, all of them for deflections."""
         return (self.points.size,)
 
-    def per_unit(self, omega: ComplexArray) -> tuple[FloatArray, FloatArray]:
-        """Magnitude of the deflection per unit of each load, (load, point, frequency), all of it the guideway's."""
+    def per_unit(self, omega: ComplexArray) -> FloatArray:
+        """Magnitude of the deflection per unit of each load, all the guideway's: (2, load, point, frequency)."""
         size = np.abs(self._frf(omega)).swapaxes(0, 1)
-        return size, size
+        return np.stack([size, size])
 
     def _frf(self, omega: ComplexArray) -> ComplexArray:
         """Evaluate the moving FRF [m/N], shape (point, load, frequency)."""

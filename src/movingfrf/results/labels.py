@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.values import Listed
@@ -239,10 +239,11 @@ def turned(values: Values) -> Values:
 
 
 class Ready(NamedTuple):
-    """Variables of a result with their labels, and the indexes of those along its dimensions."""
+    """Variables of a result with their labels."""
 
     variables: dict[str, xr.Variable]
-    indexes: dict[str, PandasIndex]
+    indexes: dict[str, PandasIndex]  # of those along its dimensions
+    keep_cf: bool  # whether they are as the CF conventions want numbers
 
 
 def ready(kind: str, values: Mapping[str, ArrayLike], known: Ready | None = None) -> Ready:
@@ -265,11 +266,13 @@ def ready(kind: str, values: Mapping[str, ArrayLike], known: Ready | None = None
     import xarray as xr
     from xarray.indexes import PandasIndex
 
-    schema, found = SCHEMAS[kind], Ready({}, {})
+    schema, arrays = SCHEMAS[kind], {name: np.asarray(value) for name, value in values.items()}
+    variables: dict[str, xr.Variable] = {}
+    indexes: dict[str, PandasIndex] = {}
     dof_units = known.variables.get("dof_unit", ("",)) if known else values.get("dof_unit", ("",))
     of_dofs = {str(unit) for unit in np.asarray(dof_units)}
-    for name, given in values.items():
-        label, value = schema[name], np.asarray(given)
+    for name, value in arrays.items():
+        label = schema[name]
         either = OF_EITHER in label.units
         units = {unit_of(label.units, dof_unit) for dof_unit in of_dofs} if either else {label.units}
         said = {"units": units.pop()} if len(units) == 1 else {"comment": f"in {label.units}, as dof_unit says"}
@@ -279,10 +282,10 @@ def ready(kind: str, values: Mapping[str, ArrayLike], known: Ready | None = None
         variable = xr.Variable(label.dims, value, {**said, "long_name": label.long_name}, encoding, fastpath=True)
         if label.dims == (name,):
             # Made here: xarray would find out that they are needed, in twice the time.
-            found.indexes[name] = PandasIndex(value, name, coord_dtype=value.dtype)
-            variable = found.indexes[name].create_variables({name: variable})[name]
-        found.variables[name] = variable
-    return found
+            indexes[name] = PandasIndex(value, name, coord_dtype=value.dtype)
+            variable = indexes[name].create_variables({name: variable})[name]
+        variables[name] = variable
+    return Ready(variables, indexes, _keep_cf(arrays, indexes))
 
 
 def labelled(
@@ -309,10 +312,11 @@ def labelled(
     import xarray as xr
 
     kind = str(attributes["kind"])
-    schema, (variables, indexes) = SCHEMAS[kind], ready(kind, values, known)
+    schema, (variables, indexes, keep_cf) = SCHEMAS[kind], ready(kind, values, known)
     if known:
         variables, indexes = {**variables, **known.variables}, {**indexes, **known.indexes}
-    kept = {"Conventions": "CF-1.11"} if _keeps_cf(variables, indexes) else {}
+        keep_cf = keep_cf and known.keep_cf
+    kept = {"Conventions": "CF-1.11"} if keep_cf else {}
     # Variables that are ready need not be merged, which takes longer: coordinates, some of which become data.
     data = [name for name in variables if not schema[name].coordinate]
     coordinates = [name for name in variables if schema[name].coordinate]
@@ -322,10 +326,10 @@ def labelled(
     return result
 
 
-def _keeps_cf(variables: Mapping[str, xr.Variable], along: Iterable[str]) -> bool:
+def _keep_cf(arrays: Mapping[str, NDArray[Any]], along: Iterable[str]) -> bool:
     """Whether what the CF conventions ask of numbers is so: they are real, and those along a dimension in order."""
-    steps = [np.diff(variables[name].values) for name in along if variables[name].dtype.kind in "if"]
-    real = all(variable.dtype.kind != "c" for variable in variables.values())
+    steps = [np.diff(arrays[name]) for name in along if arrays[name].dtype.kind in "if"]
+    real = all(array.dtype.kind != "c" for array in arrays.values())
     return real and all((step > 0).all() or (step < 0).all() for step in steps)
 
 
