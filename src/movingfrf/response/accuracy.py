@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf.response.line import TRANSFORM, Given, Line
+from movingfrf.response.line import TRANSFORM, Given, Line, in_blocks
 from movingfrf.response.sampling import SAMPLING, Excited
 from movingfrf.response.solve import solve
 from movingfrf.response.system import CoupledHistories, Response, System
@@ -140,17 +140,18 @@ def _each(
     cases, longest = len(asked[0][0]), max(spectra.shape[-1] for spectra, _ in asked)
     s = 1j * line.omega(slice(first, first + longest))
     factors = {order: s**order for _, order in asked if order}
-    channels = [(channel, order) for spectra, order in asked for channel in spectra.swapaxes(0, 1)]
-    together, measures = TRANSFORM.rows(2 * longest), list[FloatArray]()
-    for begin in range(0, len(channels), together):
-        some = channels[begin : begin + together]
-        block = np.zeros((len(some), cases, longest), complex)
-        for (channel, order), there in zip(some, block, strict=True):
-            size = channel.shape[-1]
-            np.multiply(channel, factors[order][:size] if order else 1.0, out=there[:, :size])
-        measures.extend(measured(line.swings(block, first, fading_in=fading_in)))
-    ends = np.cumsum([spectra.shape[1] for spectra, _ in asked])[:-1]
-    return [part.T for part in np.split(np.array(measures), ends)]
+    counts = [spectra.shape[1] for spectra, _ in asked]
+    found: list[FloatArray] = [np.empty((cases, count)) for count in counts]
+    for rows, here in in_blocks(counts, TRANSFORM.rows(2 * longest)):
+        block = np.zeros((cases, rows, longest), complex)
+        for kind, some, there in here:
+            spectra, order = asked[kind]
+            size = spectra.shape[-1]
+            np.multiply(spectra[:, some], factors[order][:size] if order else 1.0, out=block[:, there, :size])
+        measures = measured(line.swings(block, first, fading_in=fading_in))
+        for kind, some, there in here:
+            found[kind][:, some] = measures[:, there]
+    return found
 
 
 def past_the_end(

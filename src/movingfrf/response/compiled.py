@@ -138,6 +138,11 @@ def answered(guideway, ahead, which, vehicle, omega, kept, roughness):
 
 
 @loop
+def _size(value):
+    return math.sqrt(squared(value))
+
+
+@loop
 def per_unit(frf, which, dynamic, vehicle, omega):
     """Size of what the guideway adds to each output, then of all of it, per unit; as `System.per_unit`."""
     contacts, frequencies = dynamic.shape[0], omega.size
@@ -154,15 +159,15 @@ def per_unit(frf, which, dynamic, vehicle, omega):
     for case in range(contacts):
         for i in range(contacts):
             for k in range(frequencies):
-                yields = abs(deflection[case, i, k])
-                sizes[0, case, i, k], sizes[1, case, i, k] = abs(pushed[case, i, k]), abs(force[case, i, k])
+                yields = _size(deflection[case, i, k])
+                sizes[0, case, i, k], sizes[1, case, i, k] = _size(pushed[case, i, k]), _size(force[case, i, k])
                 sizes[0, case, contacts + i, k], sizes[1, case, contacts + i, k] = yields, yields
         for dof in range(dofs):
             row = 2 * contacts + dof
             for k in range(frequencies):
                 added, held = moved[case, dof, k], moved[contacts + case, dof, k]
                 square = squared(omega[k])
-                sizes[0, case, row, k], sizes[1, case, row, k] = abs(added), abs(added - held)
+                sizes[0, case, row, k], sizes[1, case, row, k] = _size(added), _size(added - held)
                 sizes[0, case, row + dofs, k] = square * sizes[0, case, row, k]
                 sizes[1, case, row + dofs, k] = square * sizes[1, case, row, k]
     return sizes

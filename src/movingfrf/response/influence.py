@@ -14,6 +14,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
 from movingfrf._basics.compiling import loops_for
+from movingfrf._basics.remembered import recalled
 from movingfrf.response.batches import BATCH
 from movingfrf.response.line import Line
 from movingfrf.response.truncation import TRUNCATION, Truncation
@@ -137,6 +138,10 @@ class Influence:
 
 def _bands(line: Line, truncation: float | None) -> IntArray:
     """Give the number of the first frequency of each band; one band begins beyond a stated truncation [Hz]."""
+    return recalled(line, f"bands, {truncation}", lambda: _bands_of(line, truncation))
+
+
+def _bands_of(line: Line, truncation: float | None) -> IntArray:
     edges = np.exp(np.arange(TRUNCATION.bands) * (math.log(line.size) / TRUNCATION.bands)).astype(int)
     beyond = min(Truncation.stated(truncation).harmonics(line.period, line.size), line.size - 1)
     starts = np.append(edges, [0, beyond])

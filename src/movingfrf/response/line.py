@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import accumulate, pairwise
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -370,40 +371,31 @@ class Line(Remembering):
         samples, padded, step = self.samples * finer, self.padded * finer, self.time_step / finer
         shapes = [spectra.shape[:-1] for spectra, _ in asked]
         found = [Histories(np.zeros((*shape, samples)), np.zeros(shape)) for shape in shapes]
-        # Channels of all of them in a row, those of each from the number on at which they begin.
         kinds = [
             (spectra.reshape(-1, spectra.shape[-1]), derivative, values.reshape(-1, samples), wrapped.reshape(-1))
             for (spectra, derivative), (values, wrapped) in zip(asked, found, strict=True)
             if spectra.shape[-1]
         ]
-        begins = np.cumsum([0, *(len(channels) for channels, *_ in kinds)]).tolist()
         longest = max((channels.shape[-1] for channels, *_ in kinds), default=0)
         s = 1j * self.omega(slice(longest))
         factors = {derivative: s**derivative for _, derivative in asked if derivative}
         growth = np.exp(self.decay * step * np.arange(samples)) / step
         # Not at the very end of the padding, where the ripple lies that precedes a jump at t = 0.
         last = max((padded - samples) // 8, 1)
-        together = TRANSFORM.rows(padded)
-        for first in range(0, begins[-1], together):
-            block = np.zeros((min(together, begins[-1] - first), longest), complex)
-            here = [
-                (kind, slice(max(first - begin, 0), first + len(block) - begin), max(begin - first, 0))
-                for kind, begin in zip(kinds, begins, strict=False)
-                if begin < first + len(block) and first < begin + len(kind[0])
-            ]
-            for (channels, derivative, _, _), some, row in here:
-                part = channels[some]
-                there = block[row : row + len(part), : part.shape[-1]]
-                if derivative:
-                    np.multiply(part, factors[derivative][: part.shape[-1]], out=there)
-                else:
-                    there[:] = part
+        for rows, here in in_blocks([len(channels) for channels, *_ in kinds], TRANSFORM.rows(padded)):
+            block = np.zeros((rows, longest), complex)
+            for kind, some, there in here:
+                channels, derivative, _, _ = kinds[kind]
+                size = channels.shape[-1]
+                np.multiply(
+                    channels[some], factors[derivative][:size] if derivative else 1.0, out=block[there, :size]
+                )
             periodic = scipy.fft.irfft(folded(block, padded), padded, overwrite_x=True)
             ends = np.abs(periodic[:, -3 * last : -2 * last]).max(axis=1) / step
-            for (_, _, values, wrapped), some, row in here:
-                count = len(values[some])
-                np.multiply(periodic[row : row + count, :samples], growth, out=values[some])
-                wrapped[some] = ends[row : row + count]
+            for kind, some, there in here:
+                _, _, values, wrapped = kinds[kind]
+                np.multiply(periodic[there, :samples], growth, out=values[some])
+                wrapped[some] = ends[there]
         return found
 
     def from_on(self, first: int, size: int) -> FloatArray:
@@ -447,6 +439,35 @@ def together(parts: Values) -> Values:
     """Sum parts, (part, …), which need no memory if there is but one."""
     whole: Values = parts[0] if len(parts) == 1 else parts.sum(axis=0)
     return whole
+
+
+def in_blocks(counts: Sequence[int], together: int) -> Iterator[tuple[int, list[tuple[int, slice, slice]]]]:
+    """Go through channels of several kinds, so many of each, together as many as are transformed at a time.
+
+    Yields
+    ------
+    int
+        Rows of a block.
+    list of tuple
+        Which kind, which of its channels, and which rows these are.
+
+    Examples
+    --------
+    >>> for rows, parts in in_blocks([1, 3], 3):
+    ...     print(rows, parts)
+    3 [(0, slice(0, 1, None), slice(0, 1, None)), (1, slice(0, 2, None), slice(1, 3, None))]
+    1 [(1, slice(2, 3, None), slice(0, 1, None))]
+    """
+    ends = list(accumulate(counts, initial=0))
+    for first in range(0, ends[-1], together):
+        last = min(first + together, ends[-1])
+        cuts = [(max(begin, first), min(end, last), begin) for begin, end in pairwise(ends)]
+        parts = [
+            (kind, slice(low - begin, high - begin), slice(low - first, high - first))
+            for kind, (low, high, begin) in enumerate(cuts)
+            if low < high
+        ]
+        yield last - first, parts
 
 
 def folded(spectra: ComplexArray, samples: int) -> ComplexArray:

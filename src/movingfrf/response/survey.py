@@ -11,7 +11,7 @@ from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.remembered import recalled
 from movingfrf.guideways.guideway import findings_of
 from movingfrf.response.along import CarByCar
-from movingfrf.response.batches import BATCH, unthreaded
+from movingfrf.response.batches import BATCH
 from movingfrf.response.stability import along_the_axis, require_stable, stretches
 from movingfrf.response.system import System, Tables
 
@@ -51,7 +51,6 @@ class Survey:
     findings: tuple[find.Finding, ...]
 
 
-@unthreaded
 def survey(system: System, soon: ComplexArray | None = None) -> Survey:
     """Look at a system before it is solved.
 

@@ -12,6 +12,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError
 from movingfrf._basics.welch import welch
 from movingfrf.guideways.guideway import findings_of
+from movingfrf.response.batches import unthreaded
 from movingfrf.response.line import TRANSFORM, Line
 from movingfrf.response.simulation import excitation_of, line_of
 from movingfrf.response.survey import survey
@@ -73,7 +74,7 @@ def described(scenario: Scenario) -> Description:
             contacts: Section = ("Contacts at rest", _contacts(vehicle, vehicle.static_loads))
             if endless is not None:
                 try:
-                    surveyed = survey(System(guideway=endless, vehicle=vehicle, speed=speed))
+                    surveyed = unthreaded(survey)(System(guideway=endless, vehicle=vehicle, speed=speed))
                 except SolveError as error:
                     refusal = str(error)
                 else:
