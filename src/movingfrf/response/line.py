@@ -370,7 +370,11 @@ class Line(Remembering):
         """Transform several spectra, each with the order of a derivative, back to records: as `records` does."""
         samples, padded, step = self.samples * finer, self.padded * finer, self.time_step / finer
         shapes = [spectra.shape[:-1] for spectra, _ in asked]
-        found = [Histories(np.zeros((*shape, samples)), np.zeros(shape)) for shape in shapes]
+        # Of no frequencies there is nothing.
+        made = [np.empty if spectra.shape[-1] else np.zeros for spectra, _ in asked]
+        found = [
+            Histories(make((*shape, samples)), np.zeros(shape)) for make, shape in zip(made, shapes, strict=True)
+        ]
         kinds = [
             (spectra.reshape(-1, spectra.shape[-1]), derivative, values.reshape(-1, samples), wrapped.reshape(-1))
             for (spectra, derivative), (values, wrapped) in zip(asked, found, strict=True)
@@ -383,7 +387,7 @@ class Line(Remembering):
         # Not at the very end of the padding, where the ripple lies that precedes a jump at t = 0.
         last = max((padded - samples) // 8, 1)
         for rows, here in in_blocks([len(channels) for channels, *_ in kinds], TRANSFORM.rows(padded)):
-            block = np.zeros((rows, longest), complex)
+            block = np.zeros((rows, max(longest, padded // 2 + 1)), complex)
             for kind, some, there in here:
                 channels, derivative, _, _ = kinds[kind]
                 size = channels.shape[-1]

@@ -244,6 +244,7 @@ class Ready(NamedTuple):
     variables: dict[str, xr.Variable]
     indexes: dict[str, PandasIndex]  # of those along its dimensions
     keep_cf: bool  # whether they are as the CF conventions want numbers
+    of_dofs: frozenset[str]  # units of the degrees of freedom
 
 
 def ready(kind: str, values: Mapping[str, ArrayLike], known: Ready | None = None) -> Ready:
@@ -269,8 +270,7 @@ def ready(kind: str, values: Mapping[str, ArrayLike], known: Ready | None = None
     schema, arrays = SCHEMAS[kind], {name: np.asarray(value) for name, value in values.items()}
     variables: dict[str, xr.Variable] = {}
     indexes: dict[str, PandasIndex] = {}
-    dof_units = known.variables.get("dof_unit", ("",)) if known else values.get("dof_unit", ("",))
-    of_dofs = {str(unit) for unit in np.asarray(dof_units)}
+    of_dofs = known.of_dofs if known else frozenset(map(str, arrays.get("dof_unit", ("",))))
     for name, value in arrays.items():
         label = schema[name]
         either = OF_EITHER in label.units
@@ -285,7 +285,7 @@ def ready(kind: str, values: Mapping[str, ArrayLike], known: Ready | None = None
             indexes[name] = PandasIndex(value, name, coord_dtype=value.dtype)
             variable = indexes[name].create_variables({name: variable})[name]
         variables[name] = variable
-    return Ready(variables, indexes, _keep_cf(arrays, indexes))
+    return Ready(variables, indexes, _keep_cf(arrays, indexes), of_dofs)
 
 
 def labelled(
@@ -312,7 +312,7 @@ def labelled(
     import xarray as xr
 
     kind = str(attributes["kind"])
-    schema, (variables, indexes, keep_cf) = SCHEMAS[kind], ready(kind, values, known)
+    schema, (variables, indexes, keep_cf, _) = SCHEMAS[kind], ready(kind, values, known)
     if known:
         variables, indexes = {**variables, **known.variables}, {**indexes, **known.indexes}
         keep_cf = keep_cf and known.keep_cf

@@ -170,7 +170,10 @@ class Along(NamedTuple):
         return float(self.spline(self.ends)) - self.datum - self.grade * (self.ends - self.datum_at)
 
     def level(self, distance: FloatArray | float, order: int = 0) -> FloatArray:
-        """Elevation about datum and grade [m], or a derivative of it, within the profile or beyond."""
+        """Elevation about datum and grade [m], or a derivative of it, within the profile or beyond.
+
+        Distances ascend along their last axis.
+        """
         places = np.asarray(distance)
         begins, ends = float(self.spline.x[0]), self.ends
         found = np.asarray(self.spline(places, order))
@@ -180,19 +183,23 @@ class Along(NamedTuple):
                 found -= self.grade * (places - self.datum_at)
         elif order == 1:
             found -= self.grade
-        if places.size and places.max() > self.past.begins:
-            past = places > self.past.begins
-            found[past] = self.past.onward(places[past] - ends, order)
-            if order == 0:
-                found[past] += self._at_the_end
-        if places.size and places.min() < begins:
-            before = places < begins
-            slope = float(self.spline(begins, 1)) - self.grade
-            if order:
-                found[before] = slope if order == 1 else 0.0
-            else:
-                here = float(self.spline(begins)) - self.datum - self.grade * (begins - self.datum_at)
-                found[before] = here + slope * (places[before] - begins)
+        if not places.size:
+            return found
+        last = places.shape[-1] if places.ndim else 1
+        for values, place in zip(found.reshape(-1, last), places.reshape(-1, last), strict=True):
+            if place[-1] > self.past.begins:
+                past = int(np.searchsorted(place, self.past.begins, side="right"))
+                values[past:] = self.past.onward(place[past:] - ends, order)
+                if order == 0:
+                    values[past:] += self._at_the_end
+            if place[0] < begins:
+                before = int(np.searchsorted(place, begins))
+                slope = float(self.spline(begins, 1)) - self.grade
+                if order:
+                    values[:before] = slope if order == 1 else 0.0
+                else:
+                    here = float(self.spline(begins)) - self.datum - self.grade * (begins - self.datum_at)
+                    values[:before] = here + slope * (place[:before] - begins)
         return found
 
     def steepness(self, first: float, last: float) -> float:
