@@ -54,9 +54,9 @@ class Sampling:
     costly: float = 3.0  # [1 to 5]
     less: float = 2.0  # [1 to 3]
     # A road of which no more than this share is in waves shorter than two coarse steps is sampled in these, unless
-    # that is more than this share of what is negligible of some output.
-    next_to_nothing: float = 1e-7  # [1e-9 to 1e-5: time only]
-    hidden: float = 0.3  # [0.03 to 1]
+    # that might be more than this share of what is negligible of some output.
+    next_to_nothing: float = 2e-6  # [1e-9 to 1e-5: time only]
+    hidden: float = 0.8  # [0.03 to 1]
     # Where what a road leaves out turns out to be more than this share of the largest value of a channel, less is
     # negligible, and it is solved again.
     tolerated: float = 1.5e-4  # [5e-5 to 3e-4]
@@ -107,19 +107,26 @@ class Driving(NamedTuple):
     # How little of it may be in its short periods; None if that is not known.
     differences: Differences | None = None
 
-    def points(self, period: float, wanted: Wanted) -> float:
-        """Say in how many steps per period [s] sampling begins: no finer than is needed as far as one knows."""
+    def points(self, period: float, wanted: Wanted, finer: float = np.inf) -> float:
+        """Say in how many steps per period [s] sampling begins: no finer than is needed as far as one knows.
+
+        Each step spans fewer stations than the stated number.
+        """
         every = period / self.step
         if self.differences is not None:
             for stations in wanted.stations:
                 least = self.differences.shorter(2 * stations).max(initial=0.0)
-                if least <= SAMPLING.next_to_nothing**2 * self.differences.whole:
+                if stations < finer and least <= SAMPLING.next_to_nothing**2 * self.differences.whole:
                     return every / stations
         return wanted.per_station * every
 
+    def stations(self, line: Line) -> float:
+        """Count the stations from step to step of a line."""
+        return line.period / (line.solved * self.step)
+
     def hides(self, line: Line, found: Influence) -> float:
         """Bound what sampling in the steps of a line hides of any output, relative L2."""
-        period, stations = line.period, line.period / (line.solved * self.step)
+        period, stations = line.period, self.stations(line)
         if self.differences is None or stations < 1.0:
             return 0.0
         # A spline through the stations has images of its waves, which fall back onto these, or near them.
@@ -204,7 +211,9 @@ def excited(
         parts, energy = line.looked_at(given)
         found = influence(system, line, energy, truncation, wanted.alike) if after is None else after.found
         if driving.hides(line, found) > SAMPLING.hidden * wanted.negligible:
-            line, after = _with_points(system, line, wanted.per_station * line.period / driving.step), None
+            # A number of steps that factorises makes them somewhat finer than they were to be.
+            finer = 0.9 * driving.stations(line)
+            line, after = _with_points(system, line, driving.points(line.period, wanted, finer)), None
             continue
         highest = found.content(int(SAMPLING.quarter * line.size))
         energies = (*energies, highest**2)

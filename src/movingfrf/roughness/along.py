@@ -43,7 +43,7 @@ class GoingOn:
     guesses: int = 15  # [7 to 63]
     apart: float = 4.0  # [1 to 10]
     # Order of the differences that tell how little there is in short waves.
-    difference: int = 10  # [6 to 12]
+    difference: int = 14  # [6 to 14: of higher ones rounding is all]
 
 
 GOING_ON = GoingOn()
