@@ -56,7 +56,7 @@ class Sampling:
     # A road of which no more than this share is in waves shorter than two coarse steps is sampled in these, unless
     # that might be more than this share of what is negligible of some output.
     next_to_nothing: float = 2e-6  # [1e-9 to 1e-5: time only]
-    hidden: float = 0.8  # [0.03 to 1]
+    hidden: float = 1.0  # [0.03 to 1]
     # Where what a road leaves out turns out to be more than this share of the largest value of a channel, less is
     # negligible, and it is solved again.
     tolerated: float = 1.5e-4  # [5e-5 to 3e-4]
