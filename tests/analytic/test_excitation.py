@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 import movingfrf as mf
-from movingfrf._basics.differences import Differences
+from movingfrf._basics.short_waves import HIGH_PASS, ShortWaves, filtered
 from movingfrf.roughness.excitation import Touch, excite
 
 STEP = 0.02
@@ -143,22 +143,26 @@ def test_a_smooth_road_goes_on_as_smoothly_past_the_end_of_its_profile():
     assert along.level(along.ends + 2 * along.fades) == pytest.approx(float(along.level(along.ends)), abs=1e-15)
 
 
-def test_differences_bound_what_is_in_short_waves():
-    """Of waves of one length they tell exactly how much there is, of longer ones little, of a mixture a bound."""
+def test_a_filter_bounds_what_is_in_short_waves():
+    """Of waves of one length it tells exactly how much there is, of longer ones next to nothing, of all a bound."""
     n = np.arange(20_000.0)
+
+    def told(record):
+        return ShortWaves(np.array([np.square(filtered(record)).sum()]), 1.0)
+
     for length in (2.5, 5.0, 12.0):
-        wave = np.sin(2 * np.pi / length * n)
-        energy = np.array([np.square(np.diff(wave, n=10)).sum()])
-        told = Differences(10, energy, 1.0)
-        assert told.shorter(length)[0] == pytest.approx(n.size / 2, rel=2e-3)
-        assert told.shorter(0.5 * length)[0] < 1e-2 * n.size / 2 or length < 4.0
-    assert np.isinf(told.shorter(1.9)).all()
+        wave = told(np.sin(2 * np.pi / length * n))
+        assert wave.shorter(length)[0] == pytest.approx(n.size / 2, rel=2e-3)
+        assert wave.shorter(0.5 * length)[0] < 1e-5 * n.size / 2 or length < 4.0
+    assert told(np.sin(2 * np.pi / 16.0 * n)).shorter(8.0)[0] < 1e-9 * n.size
+    # A level and a slope are nothing; what is left is rounding, here of numbers up to 1e4.
+    assert told(3.0 + 0.5 * n + 4.0 * np.sin(2 * np.pi / 200.0 * n)).shorter(8.0)[0] < 1e-13 * n.size
+    assert np.isinf(told(n).shorter(1.9)).all()
+    assert np.isinf(told(n).shorter(HIGH_PASS.longest)).all()
     rough = np.random.default_rng(0).normal(size=n.size)
     spectrum = np.abs(np.fft.rfft(rough)) ** 2 * 2 / n.size
-    energy = np.array([np.square(np.diff(rough, n=10)).sum()])
     for length in (2.2, 3.0, 6.0):
-        shorter = spectrum[int(n.size / length) :].sum()
-        assert Differences(10, energy, 1.0).shorter(length)[0] > shorter
+        assert told(rough).shorter(length)[0] > spectrum[int(n.size / length) :].sum()
 
 
 @pytest.mark.parametrize("step", [None, 0.04, 0.08])

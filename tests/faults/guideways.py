@@ -40,7 +40,12 @@ FAULTS = [
     # The same, compiled.
     Fault("compiled: waves confused", "guideways/compiled.py", "roots[n] -= step", "roots[n] += step"),
     Fault("compiled: two roots at one place", "guideways/compiled.py", "slope - value * others[n]", "slope"),
-    Fault("compiled: sides exchanged", "guideways/compiled.py", "side > 0.0", "side < 0.0"),
+    Fault(
+        "compiled: sides exchanged",
+        "guideways/compiled.py",
+        "forward[n, at] = side > 0.0\n            if",
+        "forward[n, at] = side < 0.0\n            if",
+    ),
     Fault("compiled: undamped limit missing", "guideways/compiled.py", "<= doubt * doubt:", "< 0.0:"),
     Fault(
         "compiled: waves that meet are let through", "guideways/compiled.py", "<= 2.0 * doubt *", "< 0.0 * doubt *"

@@ -50,9 +50,10 @@ def _value(coefficients, at):
 
 @loop
 def _both(coefficients, at):
-    """Value and slope."""
-    value, slope = coefficients[coefficients.size - 1], 0j
-    for a in range(coefficients.size - 2, -1, -1):
+    """Value and slope, of degree one at least."""
+    slope = coefficients[coefficients.size - 1]
+    value = slope * at + coefficients[coefficients.size - 2]
+    for a in range(coefficients.size - 3, -1, -1):
         slope = slope * at + value
         value = value * at + coefficients[a]
     return value, slope
@@ -162,12 +163,20 @@ def waves(guideway, omega):
         settled = _settle(denominator, roots, others, search)
         for a in range(degree):
             derivative[a] = (a + 1) * denominator[a + 1]
+        # The largest root has the largest doubt, which is too little for any of them as a rule.
+        largest = 0.0
+        for n in range(degree):
+            largest = max(largest, squared(roots[n]))
+        most = uncertain * _value(magnitude, math.sqrt(largest))
         for n in range(degree):
             root = roots[n]
             slope = _value(derivative, root)
             kappa[n, at] = root
             weight[n, at] = 1j * over(_value(numerator, root), slope)
             side = root.imag
+            forward[n, at] = side > 0.0
+            if settled and side * side * squared(slope) > most * most:
+                continue
             doubt = uncertain * _value(magnitude, math.sqrt(squared(root)))
             # What still moves is a multiple root, or none.
             if not settled and squared(_value(denominator, root)) > doubt * doubt:

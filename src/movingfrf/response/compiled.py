@@ -131,7 +131,7 @@ def answered(guideway, ahead, which, vehicle, omega, kept, roughness):
     solved, deflection = coupled(frf, which, dynamic, roughness[:, :, :reach].copy())
     displacement = -roughness
     displacement[:, :, :reach] += deflection
-    motion, force = response(vehicle, omega, displacement)
+    motion, force = response(vehicle, omega, displacement, reach)
     # Near a resonance of the vehicle between held contacts D d would lose digits that (I + D G)⁻¹ D R has.
     force[:, :, :reach] = solved
     return (force, deflection, motion), infinite
@@ -153,7 +153,7 @@ def per_unit(frf, which, dynamic, vehicle, omega):
         unit[contacts + case, case] = 1.0
     force, deflection = coupled(frf, which, dynamic, unit[:contacts])
     unit[:contacts] = deflection
-    moved, pushed = response(vehicle, omega, unit)
+    moved, pushed = response(vehicle, omega, unit, 0)
     dofs = moved.shape[1]
     sizes = np.empty((2, contacts, 2 * contacts + 2 * dofs, frequencies))
     for case in range(contacts):
@@ -176,8 +176,8 @@ def per_unit(frf, which, dynamic, vehicle, omega):
 @loop
 def shares(sizes, power, kinds, alike):
     """Bounds of energies from each band on, as shares, and energies of which; as `influence.influence`."""
-    sides, ports, outputs, bands = sizes.shape
-    cases = power.shape[0]
+    sides, ports, outputs, _ = sizes.shape
+    cases, _, bands = power.shape
     beyond, whole = np.zeros((sides, cases, outputs, bands + 1)), np.zeros((cases, outputs))
     for case in range(cases):
         for output in range(outputs):

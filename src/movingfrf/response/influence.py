@@ -64,6 +64,10 @@ class Influence:
         Energy of which energies are shares.
     lines : int
         Number of the frequencies.
+    power : ndarray, shape (case, port, band)
+        Energy of what drives each port.
+    highest : ndarray, shape (port, output)
+        Largest magnitude of each output per unit of what drives a port, over the bands, and where images are.
     """
 
     starts: IntArray
@@ -71,6 +75,8 @@ class Influence:
     whole: Share
     size: FloatArray
     lines: int
+    power: FloatArray
+    highest: FloatArray
 
     def error(self, kept: int, end: int) -> float:
         """Greatest relative change of any output if the road is rigid from frequency number `kept` to `end`."""
@@ -95,14 +101,8 @@ class Influence:
         return middles(self.starts, self.lines)
 
     def at_most(self, energy: FloatArray) -> float:
-        """Bound the share of any output, relative L2, of what drives the ports with so much energy, (port,)."""
-        most = np.sqrt(energy) @ self.whole.gain.max(axis=2)
-        return float(np.sqrt(quotient(np.broadcast_to(most**2, self.size.shape), self.size).max(initial=0.0)))
-
-    def weighted(self, share: FloatArray) -> float:
-        """Share of any output, relative L2, of a share of each band, shape (band,)."""
-        beyond = self.whole.beyond
-        return float(np.sqrt(((beyond[:, :, :-1] - beyond[:, :, 1:]) @ np.square(share)).max(initial=0.0)))
+        """Bound the share of any output, relative L2, of what drives the ports with so much energy, (case, port)."""
+        return float(np.sqrt(quotient((np.sqrt(energy) @ self.highest) ** 2, self.size).max(initial=0.0)))
 
     def negligible_from(self, share: Share, allowed: float, energy: FloatArray) -> int:
         """Find the lowest frequency from which on a share of the outputs is negligible.
@@ -155,12 +155,35 @@ def middles(starts: IntArray, lines: int) -> IntArray:
     return (starts + ends - 1) // 2
 
 
-def looked_at(line: Line, truncation: float | None) -> ComplexArray:
-    """Give the frequencies [rad/s] at which `influence` looks at a system, for a truncation that is stated [Hz]."""
-    return line.omega(middles(_bands(line, truncation), line.size))
+def looked_at(line: Line, truncation: float | None, images: float | None) -> ComplexArray:
+    """Give the frequencies at which `influence` looks at a system [rad/s].
+
+    Parameters
+    ----------
+    line : Line
+        The frequencies.
+    truncation : float, optional
+        Stated truncation [Hz].
+    images : float, optional
+        Frequency about which what drives it has images [rad/s].
+
+    Returns
+    -------
+    ndarray, shape (frequency,)
+        The middle of each band, and where images are.
+    """
+    omega = line.omega(middles(_bands(line, truncation), line.size))
+    return omega if images is None else np.append(omega, images - 1j * line.decay)
 
 
-def influence(system: Sized, line: Line, energy: FloatArray, truncation: float | None, alike: float) -> Influence:
+def influence(
+    system: Sized,
+    line: Line,
+    energy: FloatArray,
+    truncation: float | None,
+    alike: float,
+    images: float | None = None,
+) -> Influence:
     """Estimate outputs, and the guideway's part in them, from the system at the middle of each band.
 
     Over a band, √energy ≤ Σ_j |output per unit at port j| · √(energy at that port).
@@ -177,6 +200,8 @@ def influence(system: Sized, line: Line, energy: FloatArray, truncation: float |
         Stated truncation [Hz]: one band begins beyond it.
     alike : float
         Share of the size of the largest output of its kind that every output counts for at least.
+    images : float, optional
+        Frequency about which what drives it has images [rad/s].
 
     Returns
     -------
@@ -184,7 +209,7 @@ def influence(system: Sized, line: Line, energy: FloatArray, truncation: float |
         Per band and output.
     """
     starts = _bands(line, truncation)
-    omega = line.omega(middles(starts, line.size))
+    omega = looked_at(line, truncation, images)
     cases = energy.reshape(-1, *energy.shape[-2:])
     power = np.add.reduceat(cases, starts, axis=2)
     if system.ports <= BATCH.looped and (loops := loops_for("response.compiled", 0)):
@@ -193,7 +218,15 @@ def influence(system: Sized, line: Line, energy: FloatArray, truncation: float |
     else:
         gains, beyond, size = _shares(system, omega, power, alike)
     added, whole = map(Share, gains, beyond)
-    return Influence(starts=starts, added=added, whole=whole, size=size, lines=line.size)
+    return Influence(
+        starts=starts,
+        added=added,
+        whole=whole,
+        size=size,
+        lines=line.size,
+        power=power,
+        highest=gains[1].max(axis=-1),
+    )
 
 
 def _shares(
@@ -204,16 +237,17 @@ def _shares(
     # What the guideway adds, then all of it. Gains of many contacts are many; half of the digits tell what is
     # negligible.
     gains = np.empty((2, power.shape[1], outputs, omega.size), np.float32)
-    energies, total = np.empty((2, len(power), outputs, omega.size)), np.zeros((len(power), outputs))
+    bands, total = power.shape[-1], np.zeros((len(power), outputs))
+    energies = np.empty((2, len(power), outputs, bands))
     for here in BATCH.some(omega.size, system.ports**2):
-        found = system.per_unit(omega[here])
-        gains[..., here] = found
+        gains[..., here] = found = system.per_unit(omega[here])
+        found = found[..., : bands - here.start]
         np.square(np.einsum("scob,ncb->snob", found, amplitude[..., here]), out=energies[..., here])
         total += np.einsum("cob,ncb->no", np.square(found[1]), power[..., here])
     begins = np.cumsum((0, *system.kinds[:-1]))
     least = np.maximum.reduceat(total, begins, axis=1)
     size = np.maximum(total, alike**2 * np.repeat(least, system.kinds, axis=1))
-    beyond = np.zeros((*energies.shape[:-1], omega.size + 1))
+    beyond = np.zeros((*energies.shape[:-1], bands + 1))
     np.cumsum(quotient(energies, size[:, :, None])[..., ::-1], axis=-1, out=beyond[..., -2::-1])
     return gains, beyond, size
 

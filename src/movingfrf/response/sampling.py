@@ -15,7 +15,7 @@ import numpy as np
 import scipy.fft
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
-from movingfrf._basics.differences import Differences
+from movingfrf._basics.short_waves import ShortWaves
 from movingfrf._basics.smooth import smoothest_step
 from movingfrf.response.influence import Influence, Sized, influence
 from movingfrf.response.line import TRANSFORM, Given, Line
@@ -105,7 +105,7 @@ class Driving(NamedTuple):
     step: float  # from station to station of the profile, or from sample to sample of the forces, as a rule [s]
     finest: float | None = None  # the same where they are closest [s]; None: it is the same everywhere
     # How little of it may be in its short periods; None if that is not known.
-    differences: Differences | None = None
+    short: ShortWaves | None = None
 
     def points(self, period: float, wanted: Wanted, finer: float = np.inf) -> float:
         """Say in how many steps per period [s] sampling begins: no finer than is needed as far as one knows.
@@ -113,10 +113,10 @@ class Driving(NamedTuple):
         Each step spans fewer stations than the stated number.
         """
         every = period / self.step
-        if self.differences is not None:
+        if self.short is not None:
             for stations in wanted.stations:
-                least = self.differences.shorter(2 * stations).max(initial=0.0)
-                if stations < finer and least <= SAMPLING.next_to_nothing**2 * self.differences.whole:
+                least = self.short.shorter(2 * stations).max(initial=0.0)
+                if stations < finer and least <= SAMPLING.next_to_nothing**2 * self.short.whole:
                     return every / stations
         return wanted.per_station * every
 
@@ -124,15 +124,21 @@ class Driving(NamedTuple):
         """Count the stations from step to step of a line."""
         return line.period / (line.solved * self.step)
 
+    @property
+    def images(self) -> float | None:
+        """Frequency about which a spline through its stations has images of its waves [rad/s]; None if it is moot."""
+        return None if self.short is None else 2 * np.pi / self.step
+
     def hides(self, line: Line, found: Influence) -> float:
         """Bound what sampling in the steps of a line hides of any output, relative L2."""
         period, stations = line.period, self.stations(line)
-        if self.differences is None or stations < 1.0:
+        if self.short is None or stations < 1.0:
             return 0.0
-        # A spline through the stations has images of its waves, which fall back onto these, or near them.
+        hidden = 0.5 * period * self.short.shorter(2 * stations)
+        # Sampled so coarsely, images of waves fall back onto these, or near them.
         turns = 2 * np.pi * self.step / period * found.middles
-        images = found.weighted((turns / (2 * np.pi - turns)) ** 4 + (turns / (2 * np.pi + turns)) ** 4)
-        return found.at_most(0.5 * period * self.differences.shorter(2 * stations)) + images
+        images = (turns / (2 * np.pi - turns)) ** 8 + (turns / (2 * np.pi + turns)) ** 8
+        return found.at_most(np.square(np.sqrt(hidden) + np.sqrt(found.power @ images)))
 
 
 class Excited(NamedTuple):
@@ -209,7 +215,7 @@ def excited(
     while True:
         given = driving.given(line)
         parts, energy = line.looked_at(given)
-        found = influence(system, line, energy, truncation, wanted.alike) if after is None else after.found
+        found = after.found if after else influence(system, line, energy, truncation, wanted.alike, driving.images)
         if driving.hides(line, found) > SAMPLING.hidden * wanted.negligible:
             # A number of steps that factorises makes them somewhat finer than they were to be.
             finer = 0.9 * driving.stations(line)

@@ -164,7 +164,7 @@ def driven(
     driving = _driving(excitation, journey)
     line = line_of(journey, vehicle, fading=excitation.fading(journey.distance) / journey.speed)
     line = at_first(system, driving, line, journey.solved_step, SAMPLING.road)
-    surveyed = survey(system, soon=looked_at(line, journey.truncation))
+    surveyed = survey(system, soon=looked_at(line, journey.truncation, driving.images))
     driven_by, response, histories, left_out = _solved(system, driving, line, journey, progress)
     cut = truncated(system, driven_by, response, histories)
     elevation = excitation.elevation(journey.travelled)
@@ -283,14 +283,14 @@ def _solved(
 
 def _driving(excitation: Excitation, journey: Journey) -> Driving:
     """Tell of a road in time."""
-    speed, differences = journey.speed, excitation.differences(journey.distance)
-    if differences is not None:
-        differences = differences._replace(energy=differences.energy / speed, whole=differences.whole / speed)
+    speed, short = journey.speed, excitation.short_waves(journey.distance)
+    if short is not None:
+        short = short._replace(energy=short.energy / speed, whole=short.whole / speed)
     return Driving(
         given=lambda line: Given(excitation.elevation(speed * line.instants)),
         step=excitation.station / speed,
         finest=excitation.closest / speed,
-        differences=differences,
+        short=short,
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.prediction import predicted, predicting
 from movingfrf._basics.remembered import recalled
+from movingfrf._basics.short_waves import HIGH_PASS, filtered
 from movingfrf._basics.smooth import memory, onward, smooth_step
 from movingfrf._basics.spline import Piecewise, cubic
 from movingfrf.roughness.profile import Profile
@@ -42,30 +43,28 @@ class GoingOn:
     # many times the length of a guess apart.
     guesses: int = 15  # [7 to 63]
     apart: float = 4.0  # [1 to 10]
-    # Order of the differences that tell how little there is in short waves.
-    difference: int = 14  # [6 to 14: of higher ones rounding is all]
 
 
 GOING_ON = GoingOn()
 
 
 class Rough(NamedTuple):
-    """What differences from station to station tell of a path whose stations lie evenly."""
+    """What is in the short waves of a path whose stations lie evenly."""
 
     step: float  # from station to station [m]
-    sums: FloatArray  # (difference) from the first one on, of their squares [m²]
+    sums: FloatArray  # from the first station on, of the squares of what is left without long waves [m²]
     variance: float  # of the elevation [m²]
 
     @classmethod
     def of(cls, spline: Piecewise, step: float) -> Rough:
-        """Add up the squares of the differences."""
+        """Leave out long waves, and add up squares."""
         elevation = np.append(spline.c[3], spline(spline.x[-1]))
-        squares = np.square(np.diff(elevation, n=GOING_ON.difference))
+        squares = np.square(filtered(elevation))
         return cls(step, np.append(0.0, np.cumsum(squares)), float(elevation.var()))
 
     def over(self, first: float, last: float) -> float:
         """Sum over a stretch, counted from the first station on [m], and what is around its ends [m³]."""
-        begin = min(max(int(first / self.step) - GOING_ON.difference, 0), self.sums.size - 1)
+        begin = min(max(int(first / self.step) - HIGH_PASS.order, 0), self.sums.size - 1)
         end = min(max(int(last / self.step) + 1, begin), self.sums.size - 1)
         return float(self.sums[end] - self.sums[begin]) * self.step
 
@@ -145,7 +144,7 @@ class Along(NamedTuple):
         """Prepare one path of a profile."""
         spline, step = profile.along(path), profile.even_step()
         rough = None
-        if step is not None and profile.remembers and spline.x.size > GOING_ON.difference:
+        if step is not None and profile.remembers and spline.x.size > HIGH_PASS.order:
             rough = recalled(profile, f"roughness of path {path}", lambda: Rough.of(spline, step))
         if grade:
             past = Past.of(spline, grade, even=step is not None)

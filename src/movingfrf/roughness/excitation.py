@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
-from movingfrf._basics.differences import Differences
 from movingfrf._basics.enveloping import enveloping
 from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.short_waves import ShortWaves
 from movingfrf._basics.smooth import smooth_step, smooth_step_slope
 from movingfrf._basics.spline import Piecewise
 from movingfrf._basics.wording import count, told_apart
@@ -193,7 +193,7 @@ class Excitation:
         level = float(np.abs(self.elevation(np.array([travelled]))).max())
         return min(SETTING.slower * level, SETTING.ways * travelled * steep) / (steep or 1.0)
 
-    def differences(self, travelled: float) -> Differences | None:
+    def short_waves(self, travelled: float) -> ShortWaves | None:
         """Tell how little of the road may be in its short waves, however finely it is sampled.
 
         Parameters
@@ -203,7 +203,7 @@ class Excitation:
 
         Returns
         -------
-        Differences or None
+        ShortWaves or None
             From station to station, of what each contact meets on the way [m³]; None where stations are uneven.
         """
         touch, energy, whole = self.touch, list[float](), 0.0
@@ -217,7 +217,7 @@ class Excitation:
             begins = self.start - float(along.spline.x[0])
             energy.append(along.rough.over(begins + first, begins + last))
             whole = max(whole, along.rough.variance * travelled)
-        return Differences(GOING_ON.difference, np.array(energy), whole)
+        return ShortWaves(np.array(energy), whole)
 
     def doubt(self, travelled: FloatArray) -> FloatArray:
         """How far the elevation under each contact may be off where it reaches past the end of a profile.

@@ -71,8 +71,11 @@ def stiffness(vehicle, omega):
 
 
 @loop
-def response(vehicle, omega, displacement):
-    """Motion and contact force of a part for a displacement; as `Part.response`."""
+def response(vehicle, omega, displacement, held):
+    """Motion and contact force of a part for a displacement, this from frequency number `held` on.
+
+    As `Part.response`.
+    """
     poles, _, direct, entered, moving, pushing, prescribed, together = vehicle
     cases, contacts, frequencies = displacement.shape
     powers, modes, dofs = len(entered), poles.size, len(moving)
@@ -106,7 +109,7 @@ def response(vehicle, omega, displacement):
                     _add(complex(prescribed[dof, c]), below[c], count, total)
                 for k in range(count):
                     moved[case, dof, first + k] = complex(total[0, k], total[1, k])
-            for c in range(contacts):
+            for c in range(contacts if first + count > held else 0):
                 total[:] = 0.0
                 for power in range(powers - 1, -1, -1):
                     if power < powers - 1:
@@ -128,4 +131,4 @@ def ready():
         known.setflags(write=False)
     vehicle = Numbers(poles, coefficients, direct, coefficients, moving, coefficients, prescribed, 1)
     stiffness(vehicle, omega)
-    response(vehicle, omega, np.ones((1, 1, 1), complex))
+    response(vehicle, omega, np.ones((1, 1, 1), complex), 0)

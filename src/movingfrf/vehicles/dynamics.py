@@ -223,7 +223,7 @@ class Part(Remembering):
         """Motion (*case, dof, frequency) and contact force for a displacement, both (*case, contact, frequency)."""
         if self.numbers and (loops := loops_for("vehicles.compiled", self.numbers.poles.size * omega.size)):
             cases = handed(displacement).reshape(-1, *displacement.shape[-2:])
-            found = loops.response(self.numbers, handed(omega), cases)
+            found = loops.response(self.numbers, handed(omega), cases, 0)
             motion, force = (part.reshape(*displacement.shape[:-2], *part.shape[1:]) for part in found)
             return motion, force
         free = self._free(omega, displacement)

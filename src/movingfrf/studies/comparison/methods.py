@@ -18,6 +18,8 @@ from movingfrf.guideways.foundations import OnMass
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import Track
 from movingfrf.response.simulation import driven
+from movingfrf.response.survey import survey
+from movingfrf.response.system import System
 from movingfrf.roughness.profile import Profile
 from movingfrf.scenarios.forces import Loads
 from movingfrf.scenarios.scenario import Drive, Passage, Scenario, drive_of, passage_of
@@ -123,9 +125,10 @@ def _transformed(case: Case, guideway: Guideway) -> Solve:
     if isinstance(case.scenario.case, Passage):
         passage = replace(case.scenario.case, guideway=guideway, journey=case.journey)
         return lambda loads: replace(passage, loads=loads).run()
-    vehicle, journey = case.vehicle, case.journey
-    # Copies remember nothing: no run finds done what another one did.
-    return lambda profile: driven(copy(guideway), copy(vehicle), profile, journey)
+    # Copies remember nothing: no batch finds done what another one did. What they imply is prepared.
+    known, vehicle, journey = copy(guideway), copy(case.vehicle), case.journey
+    survey(System(guideway=known, vehicle=vehicle, speed=journey.speed))
+    return lambda profile: driven(known, vehicle, profile, journey)
 
 
 def _moving_frf(case: Case) -> Solve:
@@ -249,7 +252,7 @@ class Method:
             return "the moving impulse response of the struck road"
         if self.divides:
             return "the mesh, the factorised matrices and, with a vehicle, the smooth run-in"
-        return "nothing, each case being a call of its own"
+        return "what the guideway and, with a vehicle, that imply: critical speed, modes"
 
 
 FOR_VEHICLE: dict[str, Method] = {

@@ -1,0 +1,80 @@
+"""How little of a record is in its short waves, told by a filter that leaves out the long ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._basics.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HighPass:
+    """What tunes the filter; in brackets, between what each number is safe."""
+
+    # It is a polynomial of this order in 2 sin ½θ, θ the turn of a wave from sample to sample. The higher the order,
+    # the more it makes of rounding.
+    order: int = 12  # [10 to 14, even]
+    # It leaves out waves of so many samples and more.
+    longest: float = 17.0  # [12 to 20]
+
+
+HIGH_PASS = HighPass()
+
+
+@cache
+def _zeros() -> FloatArray:
+    """Squares of 2 sin ½θ at the waves that it leaves out altogether, each of them once for both directions.
+
+    Of all polynomials Chebyshev's rise most steeply beyond an interval within which they are small; twice zero is
+    left out as well, since long waves are great.
+    """
+    edge, order = 2.0 * np.sin(np.pi / HIGH_PASS.longest), HIGH_PASS.order - 2
+    turns = np.pi * (np.arange(order // 2) + 0.5) / order
+    return np.append(0.0, (edge * np.cos(turns)) ** 2)
+
+
+@cache
+def _taps() -> FloatArray:
+    """Weights of neighbouring samples."""
+    taps = np.ones(1)
+    for zero in _zeros():
+        taps = np.convolve(taps, [-1.0, 2.0 - zero, -1.0])
+    return taps
+
+
+def filtered(record: FloatArray) -> FloatArray:
+    """Leave out long waves; there are fewer samples by the order of the filter.
+
+    Examples
+    --------
+    >>> n = np.arange(400.0)
+    >>> long, short = (np.abs(filtered(np.sin(2 * np.pi * n / length))).max() for length in (50.0, 8.0))
+    >>> bool(long < 1e-7 * short)
+    True
+    """
+    return np.convolve(record, _taps(), mode="valid")
+
+
+class ShortWaves(NamedTuple):
+    """Energy of what the filter leaves of records with even samples."""
+
+    energy: FloatArray  # (record,) ∫ r² dx, filtered
+    whole: float  # the same of all of the longest record, roughly
+
+    def shorter(self, samples: float) -> FloatArray:
+        """Bound what is in waves shorter than so many samples, ∫ r² dx, shape (record,).
+
+        Examples
+        --------
+        >>> wave = np.sin(2 * np.pi / 4.0 * np.arange(1000.0))
+        >>> energy = np.square(filtered(wave)).sum()
+        >>> ShortWaves(np.array([energy]), 500.0).shorter(4.0).round().tolist()
+        [494.0]
+        """
+        if not 2.0 <= samples < HIGH_PASS.longest:
+            return np.full_like(self.energy, np.inf)
+        return self.energy / np.prod((2.0 * np.sin(np.pi / samples)) ** 2 - _zeros()) ** 2
