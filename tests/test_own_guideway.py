@@ -9,8 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import movingfrf as mf
+from movingfrf._basics.compiling import compiling
 from movingfrf.reports.frf import frf_figures
 from tests.helpers import DAMPED, VEHICLES, written_on
 
@@ -58,10 +60,14 @@ CALLS = {
 @pytest.mark.parametrize("call", CALLS)
 @pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
 def test_calls_take_anything_that_keeps_the_contract(call):
-    own, known = (CALLS[call](road) for road in (Own(), TRACK))
+    # In NumPy: compiled, a track and a vehicle are answered in one loop, and rounding differs.
+    with compiling(False):
+        own, known = (CALLS[call](road) for road in (Own(), TRACK))
     assert own.attrs.pop("guideway") == "Own"
     assert known.attrs.pop("guideway") == repr(TRACK)
     assert own.identical(known)
+    for name, values in CALLS[call](Own()).data_vars.items():
+        xr.testing.assert_allclose(values, known[name], rtol=1e-9, atol=1e-9 * float(abs(known[name]).max()))
 
 
 def test_a_report_draws_it():

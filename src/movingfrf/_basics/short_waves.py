@@ -15,8 +15,8 @@ from movingfrf._basics.arrays import FloatArray
 class HighPass:
     """What tunes the filter; in brackets, between what each number is safe."""
 
-    # It is a polynomial of this order in 2 sin ½θ, θ the turn of a wave from sample to sample. The higher the order,
-    # the more it makes of rounding.
+    # It is a polynomial of this order in 2 sin ½θ, θ the turn of a wave from sample to sample. The higher the
+    # order, the more it makes of rounding.
     order: int = 12  # [10 to 14, even]
     # It leaves out waves of so many samples and more.
     longest: float = 17.0  # [12 to 20]

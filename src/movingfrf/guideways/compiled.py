@@ -9,9 +9,6 @@ import numpy as np
 from movingfrf._basics.loops import loop
 from movingfrf.guideways.roots import ROOTS
 
-# Steps from frequency to frequency that grow by more than this factor tell nothing of how roots go on [1.5 to 4].
-UNEVEN = 2.0
-
 
 @loop
 def squared(value):
@@ -90,7 +87,7 @@ def _on_circles(coefficients, roots):
 @loop
 def _settle(coefficients, roots, others, search):
     """Move all roots until they stay where they are, and tell whether they do; `others` is scratch."""
-    near, settled_within, most, patience, askew = search
+    near, settled_within, most, patience, askew, _ = search
     degree = roots.size
     for number in range(1, most + 1):
         others[:] = 0.0
@@ -127,6 +124,7 @@ def _settle(coefficients, roots, others, search):
 def waves(guideway, omega):
     """Find waves, and at which frequencies two of them meet from both sides; as `waves._waves`."""
     above, below, size, by_omega, uncertain, search = guideway
+    uneven = search[-1]
     degree, count = above.shape[0] - 1, omega.size
     kappa, weight = np.empty((degree, count), np.complex128), np.empty((degree, count), np.complex128)
     forward, infinite = np.empty((degree, count), np.bool_), np.zeros(count, np.bool_)
@@ -149,9 +147,9 @@ def waves(guideway, omega):
             if at > 2:
                 far = omega[at - 2].real - omega[at - 3].real
             linear, bending = 0.0, 0.0
-            if 0.0 < ahead < UNEVEN * last:
+            if 0.0 < ahead < uneven * last:
                 linear = ahead / last
-                if 0.0 < last < UNEVEN * far:
+                if 0.0 < last < uneven * far:
                     share = ahead * (ahead + last) / (last + far)
                     linear += share / last
                     bending = share / far

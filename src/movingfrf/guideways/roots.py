@@ -47,10 +47,18 @@ class RootSearch:
     apart: int = 80  # [32 to 160: time only]
     fewest: int = 16  # [1 to 64: time only]
 
+    # Steps from frequency to frequency that grow by more than this factor tell nothing of how roots go on.
+    uneven: float = 2.0  # [1.5 to 4: time only]
+
     @property
-    def numbers(self) -> tuple[float, float, int, int, complex]:
+    def uncertain(self) -> float:
+        """What is less than this share of all terms of a dynamic stiffness counts as nothing."""
+        return self.rounding_errors * float(np.finfo(float).eps)
+
+    @property
+    def numbers(self) -> tuple[float, float, int, int, complex, float]:
         """What compiled loops take of it: the first two squared."""
-        return self.near**2, self.settled**2, self.most_steps, self.patience, self.askew
+        return self.near**2, self.settled**2, self.most_steps, self.patience, self.askew, self.uneven
 
 
 ROOTS = RootSearch()

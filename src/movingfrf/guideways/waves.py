@@ -20,9 +20,6 @@ from movingfrf._basics.checks import SolveError
 from movingfrf._basics.compiling import loops_for
 from movingfrf.guideways.roots import ROOTS, inverse, wavenumbers
 
-# What is less than this share of all terms of a dynamic stiffness counts as nothing.
-UNCERTAIN = ROOTS.rounding_errors * np.finfo(float).eps
-
 
 def polynomial(terms: dict[tuple[int, int], float]) -> FloatArray:
     """Coefficient table from {(power of κ, power of p): coefficient}.
@@ -195,7 +192,7 @@ class Seen(NamedTuple):
     @property
     def numbers(self) -> tuple[Any, ...]:
         """What compiled loops take of a guideway."""
-        return (*self, UNCERTAIN, ROOTS.numbers)
+        return (*self, ROOTS.uncertain, ROOTS.numbers)
 
     @classmethod
     def of(cls, stiffness: Ratio, speed: float) -> Seen:
@@ -241,7 +238,7 @@ def waves(seen: Seen, speed: float, omega: ComplexArray) -> Waves:
         found, infinite = loops.waves(seen.numbers, handed(omega))
     else:
         with np.errstate(all="ignore"):
-            found, infinite = _waves(seen, omega, UNCERTAIN)
+            found, infinite = _waves(seen, omega, ROOTS.uncertain)
     if infinite.any():
         refuse(infinite, speed, omega)
     require_finite(found[1], speed, omega)

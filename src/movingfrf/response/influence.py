@@ -101,7 +101,7 @@ class Influence:
         return middles(self.starts, self.lines)
 
     def at_most(self, energy: FloatArray) -> float:
-        """Bound the share of any output, relative L2, of what drives the ports with so much energy, (case, port)."""
+        """Bound the share of any output, relative L2, of what drives ports with so much energy, (case, port)."""
         return float(np.sqrt(quotient((np.sqrt(energy) @ self.highest) ** 2, self.size).max(initial=0.0)))
 
     def negligible_from(self, share: Share, allowed: float, energy: FloatArray) -> int:

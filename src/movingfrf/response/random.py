@@ -56,12 +56,11 @@ class Tolerances:
     undamped: float = 1e-9  # [1e-12 to 1e-7]
     # Share of the variance of a contact force that may lie in the highest tenth of the band.
     at_the_end: float = 0.01  # [a convention]
+    # Powers of the frequency whose integrals the statistics need.
+    powers: tuple[int, ...] = (0, 2, 4)  # [a convention]
 
 
 TOLERANCES = Tolerances()
-
-# Powers of the frequency whose integrals the statistics need.
-POWERS = (0, 2, 4)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -315,7 +314,7 @@ def _resolved(densities: Callable[[FloatArray], FloatArray], vehicle: Vehicle, e
     """Frequencies that resolve the densities; where none do, the reason."""
     comparable = np.eye(_outputs(vehicle)) + TOLERANCES.rounding * _negligible(vehicle)
     try:
-        return resolved(densities, edges, powers=POWERS, comparable=comparable)
+        return resolved(densities, edges, powers=TOLERANCES.powers, comparable=comparable)
     except Unresolved as failure:
         reason = (
             "a vibration without damping has no finite root mean square"
@@ -347,7 +346,7 @@ def _negligible(vehicle: Vehicle) -> FloatArray:
 
 def _statistics(vehicle: Vehicle, lines: Lines, exposure: float) -> dict[str, FloatArray]:
     """Statistics of every quantity by their names in the schema."""
-    variance, second, fourth = (lines.moment(power) for power in POWERS)
+    variance, second, fourth = (lines.moment(power) for power in TOLERANCES.powers)
     rounding = variance < TOLERANCES.rounding * (_negligible(vehicle) @ variance)
     variance, second, fourth = (np.where(rounding, 0.0, moment) for moment in (variance, second, fourth))
     rms, crossing, peaks = np.sqrt(variance), spectral_rate(second, variance), spectral_rate(fourth, second)

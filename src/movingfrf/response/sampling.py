@@ -126,7 +126,7 @@ class Driving(NamedTuple):
 
     @property
     def images(self) -> float | None:
-        """Frequency about which a spline through its stations has images of its waves [rad/s]; None if it is moot."""
+        """Frequency about which a spline through its stations has images of its waves [rad/s], if that matters."""
         return None if self.short is None else 2 * np.pi / self.step
 
     def hides(self, line: Line, found: Influence) -> float:

@@ -104,14 +104,10 @@ RANDOM_QUANTITIES = {
 }
 
 
-# Between the unit for degrees of freedom in m and that for those in rad.
-OF_EITHER = " or "
-
-
 def _random_labels(name: str, place: str, units: tuple[str, ...], words: str) -> dict[str, Label]:
     """Spectral density and statistics of one quantity."""
-    unit = OF_EITHER.join(units)
-    squared = OF_EITHER.join(f"({unit})2/Hz" if "/" in unit else f"{unit}2/Hz" for unit in units)
+    unit = " or ".join(units)
+    squared = " or ".join(f"({unit})2/Hz" if "/" in unit else f"{unit}2/Hz" for unit in units)
     return {
         f"{name}_density": Label(("frequency", place), squared, f"one-sided spectral density of the {words}"),
         f"{name}_rms": Label((place,), unit, f"root mean square of the {words}"),
@@ -273,7 +269,7 @@ def ready(kind: str, values: Mapping[str, ArrayLike], known: Ready | None = None
     of_dofs = known.of_dofs if known else frozenset(map(str, arrays.get("dof_unit", ("",))))
     for name, value in arrays.items():
         label = schema[name]
-        either = OF_EITHER in label.units
+        either = " or " in label.units
         units = {unit_of(label.units, dof_unit) for dof_unit in of_dofs} if either else {label.units}
         said = {"units": units.pop()} if len(units) == 1 else {"comment": f"in {label.units}, as dof_unit says"}
         # Of a coordinate nothing is missing.
@@ -341,7 +337,7 @@ def unit_of(units: str, dof_unit: str = "") -> str:
     >>> unit_of("m/s2 or rad/s2", "rad")
     'rad/s2'
     """
-    return units.split(OF_EITHER)[-1 if dof_unit == "rad" else 0]
+    return units.split(" or ")[-1 if dof_unit == "rad" else 0]
 
 
 def resolved(result: xr.Dataset) -> xr.Dataset:
