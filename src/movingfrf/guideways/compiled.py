@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from movingfrf._basics.loops import loop
+from movingfrf.guideways.lanes import room, side_by_side
 from movingfrf.guideways.roots import ROOTS
 
 
@@ -87,7 +88,7 @@ def _on_circles(coefficients, roots):
 @loop
 def _settle(coefficients, roots, others, search):
     """Move all roots until they stay where they are, and tell whether they do; `others` is scratch."""
-    near, settled_within, most, patience, askew, _ = search
+    near, settled_within, most, patience, askew = search[:5]
     degree = roots.size
     for number in range(1, most + 1):
         others[:] = 0.0
@@ -121,18 +122,43 @@ def _settle(coefficients, roots, others, search):
 
 
 @loop
+def _even(omega, first, most, share):
+    """Count frequencies from one on, up to so many, that lie as evenly as the four before."""
+    if first < 4:
+        return 0
+    gap, count = omega[first - 1].real - omega[first - 2].real, 0
+    for at in range(first - 3, min(first + most, omega.size)):
+        if not abs(omega[at].real - omega[at - 1].real - gap) <= share * gap:
+            break
+        count = at - first + 1
+    return max(count, 0)
+
+
+@loop
 def waves(guideway, omega):
     """Find waves, and at which frequencies two of them meet from both sides; as `waves._waves`."""
     above, below, size, by_omega, uncertain, search = guideway
-    uneven = search[-1]
+    uneven, even, abreast, few_abreast = search[5], search[6], search[7], search[9]
     degree, count = above.shape[0] - 1, omega.size
     kappa, weight = np.empty((degree, count), np.complex128), np.empty((degree, count), np.complex128)
     forward, infinite = np.empty((degree, count), np.bool_), np.zeros(count, np.bool_)
     denominator, numerator = np.empty(degree + 1, np.complex128), np.empty(below.shape[0], np.complex128)
     derivative, others = np.empty(degree, np.complex128), np.empty(degree, np.complex128)
     magnitude, change = np.empty(size.shape[0]), np.empty(by_omega.shape[0], np.complex128)
-    roots, before = np.empty(degree, np.complex128), np.zeros((2, degree), np.complex128)
-    for at in range(count):
+    roots, lanes, singly, at = np.empty(degree, np.complex128), np.empty((0, 0)), 0, 0
+    while at < count:
+        if at >= singly:
+            together = _even(omega, at, abreast, even)
+            if together >= few_abreast:
+                width = abreast if together >= abreast else few_abreast
+                if lanes.shape[1] != width:
+                    lanes = room(guideway, width)
+                if side_by_side(guideway, omega, at, (kappa, weight, forward), lanes):
+                    at += width
+                    continue
+                singly = at + width
+            else:
+                singly = at + max(together, 1)
         s = complex(-omega[at].imag, omega[at].real)
         _at(above, s, denominator)
         _at(below, s, numerator)
@@ -154,10 +180,11 @@ def waves(guideway, omega):
                     linear += share / last
                     bending = share / far
             for n in range(degree):
-                now = roots[n]
-                roots[n] += linear * (now - before[0, n]) - bending * (before[0, n] - before[1, n])
-                before[1, n] = before[0, n]
-                before[0, n] = now
+                roots[n] = kappa[n, at - 1]
+                if linear > 0.0:
+                    roots[n] += linear * (kappa[n, at - 1] - kappa[n, at - 2])
+                if bending > 0.0:
+                    roots[n] -= bending * (kappa[n, at - 2] - kappa[n, at - 3])
         settled = _settle(denominator, roots, others, search)
         for a in range(degree):
             derivative[a] = (a + 1) * denominator[a + 1]
@@ -188,6 +215,7 @@ def waves(guideway, omega):
                 _at(by_omega, s, change)
                 side = over(_value(change, root), slope).real
             forward[n, at] = side > 0.0
+        at += 1
     return (kappa, weight, forward), infinite
 
 

@@ -47,8 +47,14 @@ class RootSearch:
     apart: int = 80  # [32 to 160: time only]
     fewest: int = 16  # [1 to 64: time only]
 
-    # Steps from frequency to frequency that grow by more than this factor tell nothing of how roots go on.
+    # Compiled, steps between frequencies that grow by more than this factor tell nothing of how roots go on.
     uneven: float = 2.0  # [1.5 to 4: time only]
+    # Frequencies that are even but for this share of their step are taken side by side, so many, or else so few; if
+    # their roots have not settled within so many steps, they are taken one by one.
+    even: float = 1e-6  # [1e-9 to 1e-4: time only]
+    abreast: int = 64  # [32 to 128: time only]
+    few_abreast: int = 32  # [16 to 64: time only]
+    quickly: int = 4  # [2 to 8: time only]
 
     @property
     def uncertain(self) -> float:
@@ -56,9 +62,20 @@ class RootSearch:
         return self.rounding_errors * float(np.finfo(float).eps)
 
     @property
-    def numbers(self) -> tuple[float, float, int, int, complex, float]:
+    def numbers(self) -> tuple[float, float, int, int, complex, float, float, int, int, int]:
         """What compiled loops take of it: the first two squared."""
-        return self.near**2, self.settled**2, self.most_steps, self.patience, self.askew, self.uneven
+        return (
+            self.near**2,
+            self.settled**2,
+            self.most_steps,
+            self.patience,
+            self.askew,
+            self.uneven,
+            self.even,
+            self.abreast,
+            self.quickly,
+            self.few_abreast,
+        )
 
 
 ROOTS = RootSearch()

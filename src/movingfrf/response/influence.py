@@ -86,6 +86,11 @@ class Influence:
         """Greatest share of any output, relative L2, that lies from frequency number `first` on."""
         return float(np.sqrt(self._between(self.whole, first, self.lines).max(initial=0.0)))
 
+    def up_to(self, share: float) -> int:
+        """Give a frequency number beyond which no more than a share of any output is left, relative L2."""
+        more = np.flatnonzero((self.whole.beyond > share**2).any(axis=(0, 1)))
+        return int(np.append(self.starts, self.lines)[more[-1] + 1]) if more.size else 0
+
     def shares(self, first: int, end: int) -> FloatArray:
         """Greatest share of each output, relative L2, from frequency number `first` to `end`; shape (output,)."""
         return np.sqrt(self._between(self.whole, first, end).max(axis=0))

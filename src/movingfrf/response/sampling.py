@@ -80,9 +80,10 @@ class Sampling:
     # sooner what is left out has died away.
     fades: float = 0.1  # [0.05 to 0.2]
     fades_abrupt: float = 1.0  # [0.5 to 2]
-    # A response that the steps of its record do not show is shown in so many steps to half a period of its highest
-    # frequency.
+    # A response that the steps of its record do not show is shown in so many steps to half a period of the highest
+    # frequency beyond which more than this share of an output is left.
     shown: float = 3.0  # [2 to 8]
+    unseen: float = 1e-5  # [1e-6 to 3e-5]
     # For figures a channel is as large as this share of the largest of its kind at least: one that hardly moves is
     # no matter. From the other one on, what a stated truncation changes is computed rather than estimated.
     smallest: float = 1e-3  # [a convention]
@@ -161,6 +162,11 @@ class Excited(NamedTuple):
     def step(self) -> float:
         """Step in which the record is solved: half a period of the highest frequency [s]."""
         return 0.5 * self.line.period / max(self.fade.size - 1, 1)
+
+    def finer(self, time_step: float) -> int:
+        """Say how many values for each step of a record [s] show the response."""
+        highest = min(self.found.up_to(SAMPLING.unseen), self.fade.size - 1)
+        return max(int(np.ceil(SAMPLING.shown * time_step * 2 * highest / self.line.period)), 1)
 
     def likewise(self, given: Given) -> ComplexArray:
         """Spectra of something else, as far as this is solved."""

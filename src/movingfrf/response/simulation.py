@@ -182,7 +182,7 @@ def driven(
         journey.time_step,
     )
     # What is measured, and whether contact is kept, is taken from the response as it was solved.
-    finer = int(np.ceil(SAMPLING.shown * journey.time_step / driven_by.step)) if not_shown else 1
+    finer = driven_by.finer(journey.time_step) if not_shown else 1
     fine = response.histories(driven_by.line, finer) if not_shown else histories
     found = [
         *find.contact_lost(
