@@ -235,7 +235,12 @@ FAULTS = [
         "coefficients.copy()",
     ),
     Fault("nothing predicted", "roughness/along.py", "if not missed < GOING_ON.better", "if not missed < 0.0"),
-    Fault("short waves are made less", "_basics/short_waves.py", "- _zeros()) ** 2", "- _zeros()) ** 4"),
+    Fault(
+        "short waves are made less",
+        "_basics/short_waves.py",
+        "for zero in _zeros()) ** 2",
+        "for zero in _zeros()) ** 4",
+    ),
     Fault("slope of the end fades not", "_basics/smooth.py", "* (1.0 - smooth_step(beyond / length))", "* 1.0"),
     Fault(
         "grade left in",

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf._basics.compiling import PATIENCE, compiling, loops_for, numba_is_there
+from movingfrf._basics.compiling import PATIENCE, compiling, loops_for, numba_is_there, usable
 from movingfrf._basics.spline import cubic
 from movingfrf.response.influence import influence
 from movingfrf.response.line import Line
@@ -41,6 +41,15 @@ def both(compute):
 def off(one, other):
     """Largest difference, relative to the largest value."""
     return float(np.abs(one - other).max() / np.abs(other).max())
+
+
+@pytest.mark.parametrize(
+    "module",
+    ["_basics.compiled", "guideways.compiled", "vehicles.compiled", "response.compiled", "stepping.compiled"],
+)
+def test_loops_can_be_compiled(module):
+    """What cannot be compiled is done in NumPy, which nobody would notice."""
+    assert usable(module)
 
 
 @pytest.mark.parametrize("grid", GRID)

@@ -14,6 +14,7 @@ from scipy.stats import norm
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import movingfrf as mf
+from movingfrf._basics.compiling import compiling
 from movingfrf.metrics.fatigue import METHODS
 from movingfrf.metrics.measures import random_measures
 from movingfrf.response.batches import solved
@@ -260,7 +261,7 @@ def test_small_matrices_are_solved_by_one_thread(monkeypatch, name):
         return solved(*arguments)
 
     monkeypatch.setattr("movingfrf.response.system.solved", watched)
-    with threadpool_limits(limits=2):
+    with threadpool_limits(limits=2), compiling(False):
         respond(name, coherence=None)
     assert set(seen) == {1}
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
@@ -26,7 +27,7 @@ HIGH_PASS = HighPass()
 
 
 @cache
-def _zeros() -> FloatArray:
+def _zeros() -> tuple[float, ...]:
     """Squares of 2 sin ½θ at the waves that it leaves out altogether, each of them once for both directions.
 
     Of all polynomials Chebyshev's rise most steeply beyond an interval within which they are small; twice zero is
@@ -34,7 +35,7 @@ def _zeros() -> FloatArray:
     """
     edge, order = 2.0 * np.sin(np.pi / HIGH_PASS.longest), HIGH_PASS.order - 2
     turns = np.pi * (np.arange(order // 2) + 0.5) / order
-    return np.append(0.0, (edge * np.cos(turns)) ** 2)
+    return (0.0, *np.square(edge * np.cos(turns)).tolist())
 
 
 @cache
@@ -77,4 +78,5 @@ class ShortWaves(NamedTuple):
         """
         if not 2.0 <= samples < HIGH_PASS.longest:
             return np.full_like(self.energy, np.inf)
-        return self.energy / np.prod((2.0 * np.sin(np.pi / samples)) ** 2 - _zeros()) ** 2
+        turned = (2.0 * math.sin(math.pi / samples)) ** 2
+        return self.energy / math.prod(turned - zero for zero in _zeros()) ** 2

@@ -39,9 +39,12 @@ def _eliminate(system, inverses):
 
 
 @loop
-def coupled(frf, which, dynamic, roughness):
-    """Contact forces (I + D G)⁻¹ D R and deflections G F, G of distinct offsets; as `Tables.coupled`."""
-    cases, contacts, frequencies = roughness.shape
+def coupled(frf, which, dynamic, given, rough):
+    """Give contact forces (I + D G)⁻¹ D R, or (I + D G)⁻¹ L, and deflections G F, G of distinct offsets.
+
+    As `Tables.coupled`, or `Tables.carried`: what is given is roughness or loads.
+    """
+    cases, contacts, frequencies = given.shape
     force = np.empty((cases, contacts, frequencies), np.complex128)
     deflection = np.empty((cases, contacts, frequencies), np.complex128)
     system = np.empty((contacts, contacts + cases), np.complex128)
@@ -54,9 +57,9 @@ def coupled(frf, which, dynamic, roughness):
                     total += dynamic[i, m, k] * frf[which[m, j], k]
                 system[i, j] = total
             for case in range(cases):
-                total = 0j
-                for m in range(contacts):
-                    total += dynamic[i, m, k] * roughness[case, m, k]
+                total = 0j if rough else given[case, i, k]
+                for m in range(contacts if rough else 0):
+                    total += dynamic[i, m, k] * given[case, m, k]
                 system[i, contacts + case] = total
         _eliminate(system, inverses)
         for case in range(cases):
@@ -128,7 +131,7 @@ def answered(guideway, ahead, which, vehicle, omega, kept, roughness):
             break
         for row in range(ahead.size):
             frf[row, k] *= kept[k]
-    solved, deflection = coupled(frf, which, dynamic, roughness[:, :, :reach].copy())
+    solved, deflection = coupled(frf, which, dynamic, roughness[:, :, :reach].copy(), True)
     displacement = -roughness
     displacement[:, :, :reach] += deflection
     motion, force = response(vehicle, omega, displacement, reach)
@@ -151,7 +154,7 @@ def per_unit(frf, which, dynamic, vehicle, omega):
     for case in range(contacts):
         unit[case, case] = 1.0
         unit[contacts + case, case] = 1.0
-    force, deflection = coupled(frf, which, dynamic, unit[:contacts])
+    force, deflection = coupled(frf, which, dynamic, unit[:contacts], True)
     unit[:contacts] = deflection
     moved, pushed = response(vehicle, omega, unit, 0)
     dofs = moved.shape[1]
@@ -218,5 +221,5 @@ def ready():
     frf, dynamic, _ = tables(guideway, ahead, vehicle, omega)
     turned(frf[which], dynamic, 0.9)
     shares(per_unit(frf, which, dynamic, vehicle, omega), np.ones((1, 1, 1)), np.ones(4, int), 0.1)
-    coupled(frf, which, dynamic, rough)
+    coupled(frf, which, dynamic, rough, True)
     answered(guideway, ahead, which, vehicle, omega, np.ones(1), rough)

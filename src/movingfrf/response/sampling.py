@@ -137,8 +137,8 @@ class Driving(NamedTuple):
             return 0.0
         hidden = 0.5 * period * self.short.shorter(2 * stations)
         # Sampled so coarsely, images of waves fall back onto these, or near them.
-        turns = 2 * np.pi * self.step / period * found.middles
-        images = (turns / (2 * np.pi - turns)) ** 8 + (turns / (2 * np.pi + turns)) ** 8
+        turns = self.step / period * found.middles
+        images = np.square(np.square(np.square([turns / (1.0 - turns), turns / (1.0 + turns)]))).sum(axis=0)
         return found.at_most(np.square(np.sqrt(hidden) + np.sqrt(found.power @ images)))
 
 

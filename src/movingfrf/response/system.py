@@ -67,20 +67,25 @@ class Tables:
 
     def carried(self, loads: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Contact forces (I + D G)⁻¹ L [N] that loads leave [N], and deflections, all (*case, port, frequency)."""
+        if found := self._compiled(loads, rough=False):
+            return found
         force = solved(self.matrix, loads)
         return force, applied(self.frf, force)
 
     def coupled(self, roughness: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Contact forces F = (I + D G)⁻¹ D R [N] and deflections G F [m], all (*case, port, frequency)."""
+        return self._compiled(roughness, rough=True) or self.carried(applied(self.stiffness, roughness))
+
+    def _compiled(self, given: ComplexArray, *, rough: bool) -> tuple[ComplexArray, ComplexArray] | None:
+        """Answer compiled; None where that is not to be."""
         count = len(self.frf)
-        if count <= BATCH.looped and (loops := loops_for("response.compiled", 0)):
-            # Offset by offset, each from a contact to a contact.
-            frf = handed(self.frf.reshape(count * count, -1))
-            cases = handed(roughness).reshape(-1, *roughness.shape[-2:])
-            found = loops.coupled(frf, _each_from_each(count), handed(self.stiffness), cases)
-            force, deflection = (part.reshape(roughness.shape) for part in found)
-            return force, deflection
-        return self.carried(applied(self.stiffness, roughness))
+        if count > BATCH.looped or not (loops := loops_for("response.compiled", 0)):
+            return None
+        # Offset by offset, each from a contact to a contact.
+        frf, cases = handed(self.frf.reshape(count * count, -1)), handed(given).reshape(-1, *given.shape[-2:])
+        found = loops.coupled(frf, _each_from_each(count), handed(self.stiffness), cases, rough)
+        force, deflection = (part.reshape(given.shape) for part in found)
+        return force, deflection
 
 
 @cache
