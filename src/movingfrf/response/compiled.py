@@ -44,7 +44,7 @@ def coupled(frf, which, dynamic, given, rough):
 
     As `Tables.coupled`, or `Tables.carried`: what is given is roughness or loads.
     """
-    cases, contacts, frequencies = given.shape
+    cases, contacts, frequencies = given.shape[0], given.shape[1], dynamic.shape[2]
     force = np.empty((cases, contacts, frequencies), np.complex128)
     deflection = np.empty((cases, contacts, frequencies), np.complex128)
     system = np.empty((contacts, contacts + cases), np.complex128)
@@ -131,12 +131,21 @@ def answered(guideway, ahead, which, vehicle, omega, kept, roughness):
             break
         for row in range(ahead.size):
             frf[row, k] *= kept[k]
-    solved, deflection = coupled(frf, which, dynamic, roughness[:, :, :reach].copy(), True)
-    displacement = -roughness
-    displacement[:, :, :reach] += deflection
+    solved, deflection = coupled(frf, which, dynamic, roughness, True)
+    cases, contacts, frequencies = roughness.shape
+    displacement = np.empty((cases, contacts, frequencies), np.complex128)
+    # Element by element: assigning arrays to parts of others takes seconds to compile.
+    for case in range(cases):
+        for i in range(contacts):
+            for k in range(frequencies):
+                yields = deflection[case, i, k] if k < reach else 0j
+                displacement[case, i, k] = yields - roughness[case, i, k]
     motion, force = response(vehicle, omega, displacement, reach)
     # Near a resonance of the vehicle between held contacts D d would lose digits that (I + D G)⁻¹ D R has.
-    force[:, :, :reach] = solved
+    for case in range(cases):
+        for i in range(contacts):
+            for k in range(reach):
+                force[case, i, k] = solved[case, i, k]
     return (force, deflection, motion), infinite
 
 
@@ -150,13 +159,18 @@ def per_unit(frf, which, dynamic, vehicle, omega):
     """Size of what the guideway adds to each output, then of all of it, per unit; as `System.per_unit`."""
     contacts, frequencies = dynamic.shape[0], omega.size
     # Contact by contact under which the road is rough; then the same on a rigid road, whose motion is −H.
-    unit = np.zeros((2 * contacts, contacts, frequencies), np.complex128)
+    unit = np.empty((contacts, contacts, frequencies), np.complex128)
     for case in range(contacts):
-        unit[case, case] = 1.0
-        unit[contacts + case, case] = 1.0
-    force, deflection = coupled(frf, which, dynamic, unit[:contacts], True)
-    unit[:contacts] = deflection
-    moved, pushed = response(vehicle, omega, unit, 0)
+        for i in range(contacts):
+            for k in range(frequencies):
+                unit[case, i, k] = 1.0 if case == i else 0.0
+    force, deflection = coupled(frf, which, dynamic, unit, True)
+    below = np.empty((2 * contacts, contacts, frequencies), np.complex128)
+    for case in range(contacts):
+        for i in range(contacts):
+            for k in range(frequencies):
+                below[case, i, k], below[contacts + case, i, k] = deflection[case, i, k], unit[case, i, k]
+    moved, pushed = response(vehicle, omega, below, 0)
     dofs = moved.shape[1]
     sizes = np.empty((2, contacts, 2 * contacts + 2 * dofs, frequencies))
     for case in range(contacts):
