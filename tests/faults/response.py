@@ -104,7 +104,12 @@ FAULTS = [
     ),
     Fault("velocity for acceleration", "response/system.py", "(self.motion, 2)", "(self.motion, 1)"),
     # Coupling.
-    Fault("roughness sign", "response/system.py", "displacement = -roughness", "displacement = +roughness"),
+    Fault(
+        "roughness sign",
+        "response/system.py",
+        ".admitted(truncation), -roughness",
+        ".admitted(truncation), +roughness",
+    ),
     Fault(
         "beyond the truncation nothing moves",
         "response/system.py",
@@ -178,6 +183,38 @@ FAULTS = [
         "response/compiled.py",
         "range(step + 1, count):\n                total -=",
         "range(step + 2, count):\n                total -=",
+    ),
+    Fault(
+        "compiled: roughness sign",
+        "response/compiled.py",
+        "yields - roughness[case, i, k]",
+        "yields + roughness[case, i, k]",
+    ),
+    Fault(
+        "compiled: it turns back",
+        "response/compiled.py",
+        "angle += math.atan2(factor.imag",
+        "angle -= math.atan2(factor.imag",
+    ),
+    Fault(
+        "compiled: what bands hold",
+        "response/compiled.py",
+        "most += sizes[side, port, output, k]",
+        "most += 0.5 * sizes[side, port, output, k]",
+    ),
+    Fault("side by side: never settled", "guideways/lanes.py", "moving += 0 if settled else 1", "moving += 0"),
+    Fault(
+        "side by side: never in doubt",
+        "guideways/lanes.py",
+        "count += 0 if side * side",
+        "count += 0 if True or side * side",
+    ),
+    Fault("images far below", "response/sampling.py", "turns / (1.0 - turns)", "0.1 * turns / (1.0 - turns)"),
+    Fault(
+        "images met with little",
+        "response/influence.py",
+        "highest=gains[1].max(axis=-1)",
+        "highest=gains[1, ..., :-1].max(axis=-1)",
     ),
     Fault("compiled: it does not stiffen", "response/compiled.py", "frf[row, k] *= kept[k]", "frf[row, k] *= 1.0"),
     Fault("foreseen elsewhere", "response/system.py", "and (known.omega == omega).all()", ""),

@@ -221,7 +221,10 @@ def excited(
     while True:
         given = driving.given(line)
         parts, energy = line.looked_at(given)
-        found = after.found if after else influence(system, line, energy, truncation, wanted.alike, driving.images)
+        if after is None:
+            found = influence(system, line, energy, truncation, wanted.alike, driving.images)
+        else:
+            found = after.found
         if driving.hides(line, found) > SAMPLING.hidden * wanted.negligible:
             # A number of steps that factorises makes them somewhat finer than they were to be.
             finer = 0.9 * driving.stations(line)

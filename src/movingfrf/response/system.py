@@ -278,9 +278,8 @@ class System(Remembering):
         way the vehicle is moved by d = G F − R and everything follows from d.
         """
         reach = truncation.reach(omega)
-        displacement = -roughness
         if not reach:
-            motion, force = self.dynamics.response(omega, displacement)
+            motion, force = self.dynamics.response(omega, -roughness)
             return Response(force, roughness[..., :0], motion)
         if self._numbers and (loops := loops_for("response.compiled", 0)):
             kept = truncation.taper(omega[:reach])
@@ -289,7 +288,7 @@ class System(Remembering):
             if infinite.any():
                 refuse(infinite, self.speed, omega)
             return Response(*(part.reshape(*roughness.shape[:-2], *part.shape[1:]) for part in found))
-        tables = self.at(omega[:reach]).admitted(truncation)
+        tables, displacement = self.at(omega[:reach]).admitted(truncation), -roughness
         solved_force, deflection = tables.coupled(roughness[..., :reach])
         displacement[..., :reach] += deflection
         motion, force = self.dynamics.response(omega, displacement)
