@@ -43,6 +43,7 @@ class Share(NamedTuple):
 
     gain: FloatArray  # (port, output, band) magnitude per unit of what drives that port
     beyond: FloatArray  # (case, output, band + 1) upper bound of its energy from the beginning of each band on
+    most: FloatArray  # (band + 1,) of any output of any case
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -84,12 +85,12 @@ class Influence:
 
     def content(self, first: int) -> float:
         """Greatest share of any output, relative L2, that lies from frequency number `first` on."""
-        return float(np.sqrt(self._between(self.whole, first, self.lines).max(initial=0.0)))
+        return math.sqrt(self.whole.most[np.searchsorted(self.starts, first)])
 
     def up_to(self, share: float) -> int:
         """Give a frequency number beyond which no more than a share of any output is left, relative L2."""
-        more = np.flatnonzero((self.whole.beyond > share**2).any(axis=(0, 1)))
-        return int(np.append(self.starts, self.lines)[more[-1] + 1]) if more.size else 0
+        bands = int((self.whole.most > share**2).sum())
+        return int(self.starts[bands]) if bands < self.starts.size else self.lines
 
     def shares(self, first: int, end: int) -> FloatArray:
         """Greatest share of each output, relative L2, from frequency number `first` to `end`; shape (output,)."""
@@ -127,10 +128,9 @@ class Influence:
             Number of the frequency; the number of frequencies if there is no such frequency.
         """
         limit, count = allowed**2, len(self.starts)
-        harmful = np.flatnonzero((share.beyond > limit).any(axis=(0, 1)))
-        if not harmful.size:
+        band = int((share.most > limit).sum())
+        if not band:
             return 0
-        band = int(harmful[-1]) + 1
         # Within the last harmful band, frequency by frequency.
         first = int(self.starts[band - 1])
         last = int(self.starts[band]) if band < count else energy.shape[-1]
@@ -222,7 +222,7 @@ def influence(
         beyond, size = loops.shares(gains, power, np.array(system.kinds), alike)
     else:
         gains, beyond, size = _shares(system, omega, power, alike)
-    added, whole = map(Share, gains, beyond)
+    added, whole = map(Share, gains, beyond, beyond.max(axis=(1, 2), initial=0.0))
     return Influence(
         starts=starts,
         added=added,

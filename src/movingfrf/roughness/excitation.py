@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -91,8 +92,18 @@ class Touch(Remembering):
         return self.shares(wavenumber) * np.exp(1j * np.outer(self.positions, wavenumber))
 
 
+class Group(NamedTuple):
+    """Contacts that follow one path and touch the same of it."""
+
+    rows: list[int]  # which
+    along: Along
+    begins: FloatArray  # (contact, 1) where they start [m]
+    touched: tuple[float, float]  # footprint and cams [m]
+    foremost: float  # where the foremost contact of all starts [m]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Excitation:
+class Excitation(Remembering):
     """A road as contacts see it that travel along it; made by `excite`.
 
     Parameters
@@ -157,22 +168,26 @@ class Excitation:
             Elevation [m], positive up.
         """
         seen = np.empty((self.touch.positions.size, travelled.size))
-        for rows, along, distance, touched, setting_in in self._alike(travelled):
-            found = along.seen(distance, *touched)
-            found[:, : setting_in.shape[1]] *= smooth_step(setting_in)
-            seen[rows] = found
+        for group, distance, setting_in in self._alike(travelled):
+            found = group.along.seen(distance, *group.touched)
+            if setting_in.size:
+                found[:, : setting_in.shape[1]] *= smooth_step(setting_in)
+            if len(found) == len(seen):
+                return found
+            seen[group.rows] = found
         return seen
 
     def rate(self, travelled: FloatArray, speed: float) -> FloatArray:
         """Rate of change of the elevation that each contact sees, as for `elevation` [m/s]."""
         rate = np.empty((self.touch.positions.size, travelled.size))
-        for rows, along, distance, touched, setting_in in self._alike(travelled):
-            rising, blending = along.seen(distance, *touched, derivative=1), setting_in.shape[1]
+        for group, distance, setting_in in self._alike(travelled):
+            along, touched, blending = group.along, group.touched, setting_in.shape[1]
+            rising = along.seen(distance, *touched, derivative=1)
             if blending:
                 rising[:, :blending] *= smooth_step(setting_in)
                 early = along.seen(distance[:, :blending], *touched)
                 rising[:, :blending] += early * smooth_step_slope(setting_in) / self.blend
-            rate[rows] = rising * speed
+            rate[group.rows] = rising * speed
         return rate
 
     def fading(self, travelled: float) -> float:
@@ -233,9 +248,10 @@ class Excitation:
             What several guesses within the profile were off [m].
         """
         doubt = np.zeros((GOING_ON.guesses, self.touch.positions.size, travelled.size))
-        for rows, along, distances, (footprint, cams), _ in self._alike(travelled):
+        for group, distances, _ in self._alike(travelled):
+            along, (footprint, cams) = group.along, group.touched
             reach = 0.5 * (footprint + cams)
-            for row, distance in zip(rows, distances, strict=True):
+            for row, distance in zip(group.rows, distances, strict=True):
                 first = int(np.searchsorted(distance, along.ends - reach))
                 if reach and first < travelled.size:
                     off, past = along.doubt(reach), np.minimum(distance[first:] + reach - along.ends, reach)
@@ -243,26 +259,30 @@ class Excitation:
                     doubt[:, row, first:] = touched / (2.0 if cams else 1.0)
         return doubt
 
-    def _alike(
-        self, travelled: FloatArray
-    ) -> Iterator[tuple[list[int], Along, FloatArray, tuple[float, float], FloatArray]]:
-        """Go through contacts that touch the same: which, path, distances, what, how far the profile has set in."""
-        touch = self.touch
-        foremost = self.start + touch.positions.max()
+    @property
+    @remembered
+    def _groups(self) -> list[Group]:
+        """Contacts that touch the same."""
+        foremost = self.start + self.touch.positions.max()
+        return [
+            Group(
+                rows, self.along[path], self.start + self.touch.positions[rows, None], (footprint, cams), foremost
+            )
+            for (path, footprint, cams), rows in self.touch.alike.items()
+        ]
+
+    def _alike(self, travelled: FloatArray) -> Iterator[tuple[Group, FloatArray, FloatArray]]:
+        """Go through contacts that touch the same: which, at what distances, how far the profile has set in."""
         # As many at a time as memory hardly notices.
         together = max(SETTING.together // max(travelled.size, 1), 1)
-        groups = [
-            (path, (footprint, cams), rows[first : first + together])
-            for (path, footprint, cams), rows in touch.alike.items()
-            for first in range(0, len(rows), together)
-        ]
-        for path, touched, rows in groups:
-            begins = self.start + touch.positions[rows]
-            distance = travelled + begins[:, None]
-            over = foremost + self.blend - begins.min()
-            blending = int(np.searchsorted(travelled, over)) if self.blend else 0
-            setting_in = (distance[:, :blending] - foremost) / (self.blend or 1.0)
-            yield rows, self.along[path], distance, touched, setting_in
+        for whole in self._groups:
+            for first in range(0, len(whole.rows), together):
+                some = slice(first, first + together)
+                group = whole._replace(rows=whole.rows[some], begins=whole.begins[some])
+                distance = travelled + group.begins
+                over = group.foremost + self.blend - float(group.begins.min())
+                blending = int(np.searchsorted(travelled, over)) if self.blend else 0
+                yield group, distance, (distance[:, :blending] - group.foremost) / (self.blend or 1.0)
 
 
 def excite(profile: Profile, touch: Touch, *, start: float, distance: float, blend: float) -> Excitation:
