@@ -62,7 +62,7 @@ def record() -> None:
         axes.axvspan(duration, line.period, color="0.93")
         axes.set_xlim(0.0, line.period)
         legend_above(axes)
-    above.annotate("end of the record", (duration, above.get_ylim()[1]), (4, -12), textcoords="offset points")
+    above.annotate("end of the record", (duration, above.get_ylim()[0]), (4, 6), textcoords="offset points")
     figure.savefig(FOLDER / "sampling_record.png", metadata={"Software": None})
 
 
