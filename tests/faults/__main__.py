@@ -138,6 +138,8 @@ def selection(fault: Fault | None) -> list[str]:
         return ["tests/test_door.py", *SELECTION]
     if fault in faults_of("written"):
         return WRITTEN + SELECTION
+    if file.endswith(("compiled.py", "lanes.py")):
+        return ["tests/laws/test_compiled.py", *SELECTION, *REFERENCE]
     if file.startswith(SAMPLED):
         return [*SAMPLING, *SELECTION, *REFERENCE]
     independent = file.startswith(("stepping/", "guideways/sampled", "guideways/record", "guideways/files"))

@@ -209,7 +209,9 @@ FAULTS = [
         "count += 0 if side * side",
         "count += 0 if True or side * side",
     ),
-    Fault("images far below", "response/sampling.py", "turns / (1.0 - turns)", "0.1 * turns / (1.0 - turns)"),
+    Fault(
+        "images far below", "response/sampling.py", "turns = self.step / period", "turns = 0.1 * self.step / period"
+    ),
     Fault(
         "images met with little",
         "response/influence.py",

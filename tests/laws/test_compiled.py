@@ -67,6 +67,16 @@ def test_moving_frfs(name, share, grid):
             assert off(one[:, column], other[:, column]) < 2e-9 or size < 1e-12 * np.abs(other).max()
 
 
+@pytest.mark.parametrize("speed", [0.0, 20.0])
+def test_real_waves_are_met_where_damping_would_push_them(speed):
+    """Undamped, above the cut-off, at real frequencies: rounding alone tells on which side of the axis they lie."""
+    road = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9), mf.Spring(stiffness=8.0e6))
+    omega = np.sqrt(8.0e6 / 711.9) * np.linspace(1.3, 3.0, 300)
+    damped = mf.track(road.beam, mf.Spring(stiffness=8.0e6, damping=1.0))
+    for one in both(lambda: road.moving_frf(AHEAD, speed, omega)):
+        assert off(one, damped.moving_frf(AHEAD, speed, omega)) < 1e-3
+
+
 @pytest.mark.parametrize("name", ROADS)
 def test_waves_are_all_there(name):
     """As many on either side, and the same ones: in whatever order."""
