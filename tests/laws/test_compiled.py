@@ -131,7 +131,7 @@ def test_contacts_on_a_guideway(contacts):
     for part, same in zip(one, other, strict=True):
         assert part.shape == rough.shape
         assert off(part, same) < 1e-9
-    # Where D G = 0 but for one entry, which is large, elimination must not begin with that of the diagonal.
+    # Where I + D G is next to nothing on its diagonal, elimination must not begin there.
     frf[:], dynamic[:] = np.eye(contacts)[:, :, None], -np.eye(contacts)[:, :, None] * (1.0 - 1e-15)
     frf += 1e-3 * np.eye(contacts, k=1)[:, :, None] + 1e-3 * np.eye(contacts, k=1 - contacts)[:, :, None]
     if contacts > 1:
