@@ -1,4 +1,7 @@
-"""Splines and smooth steps, compiled by numba (the extra `fast`); `spline` and `smooth` have them in NumPy."""
+"""Splines, smooth steps and linear prediction, compiled by numba (the extra `fast`).
+
+`spline`, `smooth` and `prediction` have them in NumPy.
+"""
 
 from __future__ import annotations
 
@@ -54,6 +57,86 @@ def piecewise(knots, coefficients, at, order):
 
 
 @loop
+def cubic(x, y, first, last):
+    """Give coefficients of the cubic spline through four points or more, slopes at its ends if known; as `cubic`.
+
+    Elimination needs no pivoting: rows are dominated by their diagonal, but for the ends', which come to be so.
+    """
+    size = x.size
+    slope, above = np.empty(size), np.empty(size)
+    width, next_width = x[1] - x[0], x[2] - x[1]
+    rise, next_rise = (y[1] - y[0]) / width, (y[2] - y[1]) / next_width
+    if np.isnan(first):
+        both = width + next_width
+        above[0] = both / next_width
+        slope[0] = ((width + 2.0 * both) * next_width * rise + width * width * next_rise) / (both * next_width)
+    else:
+        above[0], slope[0] = 0.0, first
+    for n in range(1, size - 1):
+        width, rise = x[n] - x[n - 1], (y[n] - y[n - 1]) / (x[n] - x[n - 1])
+        next_width = x[n + 1] - x[n]
+        next_rise = (y[n + 1] - y[n]) / next_width
+        inverse = 1.0 / (2.0 * (width + next_width) - next_width * above[n - 1])
+        above[n] = width * inverse
+        slope[n] = (3.0 * (next_width * rise + width * next_rise) - next_width * slope[n - 1]) * inverse
+    if np.isnan(last):
+        width, next_width = x[size - 2] - x[size - 3], x[size - 1] - x[size - 2]
+        rise, next_rise = (y[size - 2] - y[size - 3]) / width, (y[size - 1] - y[size - 2]) / next_width
+        both = width + next_width
+        right = ((next_width + 2.0 * both) * width * next_rise + next_width * next_width * rise) / both
+        slope[size - 1] = (right - both * slope[size - 2]) / (width - both * above[size - 2])
+    else:
+        slope[size - 1] = last
+    coefficients = np.empty((4, size - 1))
+    for n in range(size - 2, -1, -1):
+        slope[n] -= above[n] * slope[n + 1]
+    for n in range(size - 1):
+        inverse = 1.0 / (x[n + 1] - x[n])
+        rise = (y[n + 1] - y[n]) * inverse
+        bend = (slope[n] + slope[n + 1] - 2.0 * rise) * inverse
+        coefficients[0, n], coefficients[1, n] = bend * inverse, (rise - slope[n]) * inverse - bend
+        coefficients[2, n], coefficients[3, n] = slope[n], y[n]
+    return coefficients
+
+
+@loop
+def reflected(forward, backward, order):
+    """Take reflection coefficients out of errors of prediction, in place; as `prediction.predicting`."""
+    reflections, size = np.zeros(order), forward.size
+    for step in range(order):
+        power, product = 0.0, 0.0
+        for n in range(size - step):
+            power += forward[n] * forward[n] + backward[n] * backward[n]
+            product += forward[n] * backward[n]
+        if power == 0.0:
+            return reflections[:step]
+        factor = 2.0 * product / power
+        reflections[step] = factor
+        # Forward errors move up by one, towards the next backward ones.
+        for n in range(size - step):
+            ahead, behind = forward[n] - factor * backward[n], backward[n] - factor * forward[n]
+            backward[n] = behind
+            if n:
+                forward[n - 1] = ahead
+    return reflections
+
+
+@loop
+def predicted(known, coefficients, samples):
+    """Predict the next samples; as `prediction.predicted`."""
+    order = coefficients.size
+    record = np.empty(order + samples)
+    for n in range(order):
+        record[n] = known[n]
+    for n in range(order, order + samples):
+        value = 0.0
+        for before in range(order):
+            value += coefficients[before] * record[n - 1 - before]
+        record[n] = value
+    return record[order:]
+
+
+@loop
 def smoothest_step(x, coefficients):
     """Step from 0 to 1; as `smooth.smoothest_step`."""
     step = np.empty(x.size)
@@ -77,4 +160,6 @@ def ready():
     for known in (knots, coefficients):
         known.setflags(write=False)
     piecewise(knots, coefficients, np.array([0.5]), 0)
+    cubic(np.arange(4.0), np.arange(4.0), np.nan, np.nan)
+    predicted(np.ones(1), reflected(np.arange(3.0), np.arange(3.0), 1), 1)
     smoothest_step(np.array([0.5]), of_step())

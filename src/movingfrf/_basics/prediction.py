@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.compiling import loops_for
 
 
 def predicting(record: FloatArray, order: int) -> tuple[FloatArray, float]:
@@ -36,21 +37,38 @@ def predicting(record: FloatArray, order: int) -> tuple[FloatArray, float]:
     >>> bool(np.abs(goes_on - np.sin(0.3 * np.arange(400.0, 403.0))).max() < 1e-4)
     True
     """
-    forward, backward, coefficients = record[1:], record[:-1], np.zeros(0)
-    for _ in range(order):
-        size = float(forward @ forward + backward @ backward)
-        if not size:
-            break
-        reflection = 2.0 * float(forward @ backward) / size
+    forward, backward = record[1:].copy(), record[:-1].copy()
+    loops = loops_for("_basics.compiled", record.size * order // 64)
+    reflections = (loops.reflected if loops else _reflected)(forward, backward, order)
+    coefficients = np.zeros(0)
+    for reflection in reflections:
         coefficients = np.append(coefficients - reflection * coefficients[::-1], reflection)
-        forward, backward = (forward - reflection * backward)[1:], (backward - reflection * forward)[:-1]
-    missed = np.concatenate([forward, backward])
+    left = forward.size - reflections.size
+    missed = np.concatenate([forward[:left], backward[:left]])
     return coefficients, float(np.sqrt(np.square(missed).mean()))
+
+
+def _reflected(forward: FloatArray, backward: FloatArray, order: int) -> FloatArray:
+    """Take reflection coefficients out of errors of prediction, in place: as many are left less."""
+    reflections = np.zeros(order)
+    for step in range(order):
+        size = forward.size - step
+        ahead, behind = forward[:size], backward[:size]
+        power = float(ahead @ ahead + behind @ behind)
+        if not power:
+            return reflections[:step]
+        reflections[step] = factor = 2.0 * float(ahead @ behind) / power
+        # Forward errors move up by one, towards the next backward ones.
+        forward[: size - 1], backward[:size] = (ahead - factor * behind)[1:], behind - factor * ahead
+    return reflections
 
 
 def predicted(record: FloatArray, coefficients: FloatArray, samples: int) -> FloatArray:
     """Predict the next samples of a record from coefficients that `predicting` found."""
     order = coefficients.size
+    if loops := loops_for("_basics.compiled", samples * order // 16):
+        found: FloatArray = loops.predicted(record[record.size - order :].copy(), coefficients, samples)
+        return found
     known = np.concatenate([record[record.size - order :], np.zeros(samples)])
     last_first = coefficients[::-1].copy()
     for n in range(samples):

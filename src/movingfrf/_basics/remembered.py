@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 Implied = TypeVar("Implied")
+Remembers = TypeVar("Remembers", bound="Remembering")
 
 
 class Remembering:
@@ -81,12 +82,69 @@ def recalled(value: Any, name: str, compute: Callable[[], Implied]) -> Implied:
     object
         What is implied.
     """
+    memory = _memory(value)
+    if name not in memory:
+        memory[name] = _sealed(compute())
+    known: Implied = memory[name]
+    return known
+
+
+def latest(value: Any, name: str, fits: Callable[[Implied], bool], compute: Callable[[], Implied]) -> Implied:
+    """Remember the latest of what a value implies together with something else.
+
+    Parameters
+    ----------
+    value : Remembering
+        What remembers.
+    name : str
+        What is remembered.
+    fits : callable
+        Tells of what is remembered whether it is what is asked for.
+    compute : callable
+        Computes it, without arguments, in place of what is remembered. What it returns is shared, as for
+        `remembered`.
+
+    Returns
+    -------
+    object
+        What is implied.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True, slots=True)
+    ... class Span(Remembering):
+    ...     length: float
+    ...     def parts(self, count):
+    ...         def cut():
+    ...             print("cut")
+    ...             return tuple(self.length / count for _ in range(count))
+    ...         return latest(self, "parts", lambda known: len(known) == count, cut)
+    >>> span = Span(6.0)
+    >>> span.parts(2), span.parts(2), span.parts(3)
+    cut
+    cut
+    ((3.0, 3.0), (3.0, 3.0), (2.0, 2.0, 2.0))
+    """
+    memory = _memory(value)
+    known: Implied | None = memory.get(name)
+    if known is None or not fits(known):
+        memory[name] = known = _sealed(compute())
+    return known
+
+
+def sharing(value: Remembers, memory: dict[str, Any]) -> Remembers:
+    """Let a value that has just been made remember what others remember that are made of the same."""
+    object.__setattr__(value, "_implied", memory)
+    return value
+
+
+def _memory(value: Any) -> dict[str, Any]:
+    """Find what a value remembers."""
     if not hasattr(value, "_implied"):
         object.__setattr__(value, "_implied", {})
-    implied: dict[str, Implied] = value._implied
-    if name not in implied:
-        implied[name] = _sealed(compute())
-    return implied[name]
+    memory: dict[str, Any] = value._implied
+    return memory
 
 
 def _sealed(implied: Implied) -> Implied:

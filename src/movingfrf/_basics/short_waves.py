@@ -38,15 +38,6 @@ def _zeros() -> tuple[float, ...]:
     return (0.0, *np.square(edge * np.cos(turns)).tolist())
 
 
-@cache
-def _taps() -> FloatArray:
-    """Weights of neighbouring samples."""
-    taps = np.ones(1)
-    for zero in _zeros():
-        taps = np.convolve(taps, [-1.0, 2.0 - zero, -1.0])
-    return taps
-
-
 def filtered(record: FloatArray) -> FloatArray:
     """Leave out long waves; there are fewer samples by the order of the filter.
 
@@ -57,7 +48,11 @@ def filtered(record: FloatArray) -> FloatArray:
     >>> bool(long < 1e-7 * short)
     True
     """
-    return np.convolve(record, _taps(), mode="valid")
+    for zero in _zeros():
+        neighbours = record[:-2] + record[2:]
+        record = (2.0 - zero) * record[1:-1]
+        record -= neighbours
+    return record
 
 
 class ShortWaves(NamedTuple):

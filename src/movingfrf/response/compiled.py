@@ -118,20 +118,13 @@ def tables(guideway, ahead, vehicle, omega):
 
 
 @loop
-def answered(guideway, ahead, which, vehicle, omega, kept, roughness):
-    """Answer to roughness, and where that is infinite; as `System.answer`.
+def answered(frf, which, dynamic, vehicle, omega, kept, roughness):
+    """Answer to roughness; as `System.answer`.
 
     Of the moving FRF the given shares are kept, as far as they reach.
     """
     reach = kept.size
-    frf, dynamic, infinite = tables(guideway, ahead, vehicle, omega[:reach])
-    for k in range(reach - 1, -1, -1):
-        # It stiffens towards the end alone.
-        if kept[k] == 1.0:
-            break
-        for row in range(ahead.size):
-            frf[row, k] *= kept[k]
-    solved, deflection = coupled(frf, which, dynamic, roughness, True)
+    solved, deflection = coupled(frf * kept, which, dynamic, roughness, True)
     cases, contacts, frequencies = roughness.shape
     displacement = np.empty((cases, contacts, frequencies), np.complex128)
     # Element by element: assigning arrays to parts of others takes seconds to compile.
@@ -146,7 +139,7 @@ def answered(guideway, ahead, which, vehicle, omega, kept, roughness):
         for i in range(contacts):
             for k in range(reach):
                 force[case, i, k] = solved[case, i, k]
-    return (force, deflection, motion), infinite
+    return force, deflection, motion
 
 
 @loop
@@ -221,6 +214,28 @@ def shares(sizes, power, kinds, alike):
     return beyond, whole
 
 
+@loop
+def harmful(sizes, beyond, size, energy, limit):
+    """Count the first frequencies of a band up to the last one from which on too much is left of some output.
+
+    With sizes of outputs in the band, and energies beyond it; as `Influence.negligible_from`.
+    """
+    cases, ports, frequencies = energy.shape
+    last = 0
+    for case in range(cases):
+        for output in range(size.shape[1]):
+            whole, left = size[case, output], beyond[case, output]
+            for k in range(frequencies - 1, last - 1, -1):
+                most = 0.0
+                for port in range(ports):
+                    most += sizes[port, output] * math.sqrt(energy[case, port, k])
+                left += most * most / whole if whole > 0.0 else 0.0
+                if left > limit:
+                    last = k + 1
+                    break
+    return last
+
+
 def ready():
     """Compile what is here, or load it, for arrays as they are handed over."""
     above, below, by_omega = np.array([[1, 1], [0, 0], [1, 0j]]), np.array([[1 + 0j]]), np.array([[0j]])
@@ -234,6 +249,11 @@ def ready():
     rough = np.ones((1, 1, 1), complex)
     frf, dynamic, _ = tables(guideway, ahead, vehicle, omega)
     turned(frf[which], dynamic, 0.9)
-    shares(per_unit(frf, which, dynamic, vehicle, omega), np.ones((1, 1, 1)), np.ones(4, int), 0.1)
+    sizes = per_unit(frf, which, dynamic, vehicle, omega)
+    sizes.setflags(write=False)
+    beyond, size = shares(sizes, np.ones((1, 1, 1)), np.ones(4, int), 0.1)
+    harmful(beyond[0, :, :, 0].copy(), beyond[0, :, :, 0].copy(), size, np.ones((1, 1, 1)), 0.1)
     coupled(frf, which, dynamic, rough, True)
-    answered(guideway, ahead, which, vehicle, omega, np.ones(1), rough)
+    for solved in (frf, dynamic):
+        solved.setflags(write=False)
+    answered(frf, which, dynamic, vehicle, omega, np.ones(1), rough)

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray
+from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, handed
 from movingfrf._basics.compiling import loops_for
 from movingfrf._basics.remembered import recalled
 from movingfrf.response.batches import BATCH
@@ -85,7 +85,7 @@ class Influence:
 
     def content(self, first: int) -> float:
         """Greatest share of any output, relative L2, that lies from frequency number `first` on."""
-        return math.sqrt(self.whole.most[np.searchsorted(self.starts, first)])
+        return math.sqrt(self.whole.most[self.starts.searchsorted(first)])
 
     def up_to(self, share: float) -> int:
         """Give a frequency number beyond which no more than a share of any output is left, relative L2."""
@@ -98,7 +98,7 @@ class Influence:
 
     def _between(self, share: Share, first: int, end: int) -> FloatArray:
         """Energy of the bands that begin from frequency number `first` on, before `end`; shape (case, output)."""
-        begins, ends = np.searchsorted(self.starts, [first, end]).tolist()
+        begins, ends = self.starts.searchsorted([first, end]).tolist()
         return share.beyond[:, :, begins] - share.beyond[:, :, max(begins, ends)]
 
     @property
@@ -134,7 +134,11 @@ class Influence:
         # Within the last harmful band, frequency by frequency.
         first = int(self.starts[band - 1])
         last = int(self.starts[band]) if band < count else energy.shape[-1]
-        cases = np.sqrt(energy[..., first:last]).reshape(-1, energy.shape[-2], last - first)
+        cases = energy[..., first:last].reshape(-1, energy.shape[-2], last - first)
+        if loops := loops_for("response.compiled", 0):
+            parts = (share.gain[:, :, band - 1], share.beyond[:, :, band], self.size, cases)
+            return first + int(loops.harmful(*(handed(part, float) for part in parts), limit))
+        cases = np.sqrt(cases)
         each = quotient((share.gain[:, :, band - 1].T @ cases) ** 2, self.size[:, :, None])
         tail = np.cumsum(each[:, :, ::-1], axis=2)[:, :, ::-1] + share.beyond[:, :, band, None]
         harmful = np.flatnonzero((tail > limit).any(axis=(0, 1)))
@@ -177,8 +181,13 @@ def looked_at(line: Line, truncation: float | None, images: float | None) -> Com
     ndarray, shape (frequency,)
         The middle of each band, and where images are.
     """
-    omega = line.omega(middles(_bands(line, truncation), line.size))
-    return omega if images is None else np.append(omega, images - 1j * line.decay)
+
+
+    def make() -> ComplexArray:
+        omega = line.omega(middles(_bands(line, truncation), line.size))
+        return omega if images is None else np.append(omega, images - 1j * line.decay)
+
+    return recalled(line, f"looked at, {truncation}, {images}", make)
 
 
 def influence(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 from typing import NamedTuple, TypeVar
 
@@ -13,7 +13,7 @@ import scipy.fft
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, IntArray, require_memory, squared
 from movingfrf._basics.checks import checking
-from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.remembered import Remembering, recalled, remembered
 from movingfrf._basics.smooth import memory, onward, smooth_step, smoothest_step
 from movingfrf._basics.spline import cubic
 
@@ -147,6 +147,10 @@ class Line(Remembering):
             check.positive("time_step", self.time_step, "s")
             check.not_negative("dying", self.dying, "1/s")
             check.not_negative("fading", self.fading, "s")
+
+    def solved_in(self, points: int) -> Line:
+        """Take the same record, solved in so many steps per period."""
+        return recalled(self, f"solved in {points}", lambda: replace(self, points=points))
 
     @property
     @remembered

@@ -193,7 +193,7 @@ def random_response(
         if wanted is not None and not check.faults and not (wanted.size and wanted.min() >= 0):
             least = f"{wanted.min():g} Hz" if wanted.size else "none"
             check.refuse("frequency", f"must hold frequencies of at least zero [Hz], got {least}")
-    system = System(guideway=guideway, vehicle=vehicle, speed=speed)
+    system = System.of(guideway, vehicle, speed)
     progress("steady state", 0.0)
     surveyed = survey(system)
     steady = surveyed.steady
@@ -216,8 +216,8 @@ def random_response(
         axis, shown = coordinates(vehicle, wanted), densities(wanted)
     values: dict[str, ArrayLike] = {
         **axis,
-        "static_load": steady.load,
-        "static_deflection": steady.deflection,
+        "static_load": steady.load.copy(),
+        "static_deflection": steady.deflection.copy(),
         **{f"{name}_density": shown[:, part] for name, part in _parts(vehicle).items()},
         **statistics,
         "dynamic_load_coefficient": load_coefficient(force_rms, steady.load),

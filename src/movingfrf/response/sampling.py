@@ -15,8 +15,10 @@ import numpy as np
 import scipy.fft
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
+from movingfrf._basics.remembered import recalled
 from movingfrf._basics.short_waves import ShortWaves
 from movingfrf._basics.smooth import smoothest_step
+from movingfrf.response.batches import BATCH
 from movingfrf.response.influence import Influence, Sized, influence
 from movingfrf.response.line import TRANSFORM, Given, Line
 from movingfrf.response.truncation import TRUNCATION, Truncation
@@ -137,9 +139,14 @@ class Driving(NamedTuple):
             return 0.0
         hidden = 0.5 * period * self.short.shorter(2 * stations)
         # Sampled so coarsely, images of waves fall back onto these, or near them.
-        turns = self.step / period * found.middles
-        images = np.square(np.square(np.square([turns / (1.0 - turns), turns / (1.0 + turns)]))).sum(axis=0)
+        images = recalled(line, f"images, {self.step}", lambda: _images(self.step / period * found.middles))
         return found.at_most(np.square(np.sqrt(hidden) + np.sqrt(found.power @ images)))
+
+
+def _images(turns: FloatArray) -> FloatArray:
+    """Square the two images that a spline has of waves, which turn so much from station to station."""
+    squares: FloatArray = np.square(np.square(np.square([turns / (1.0 - turns), turns / (1.0 + turns)])))
+    return squares.sum(axis=0)
 
 
 class Excited(NamedTuple):
@@ -253,11 +260,13 @@ def excited(
         ends = found.negligible_from(found.whole, limit, energy)
         if passed > ends:
             ends = min(passed, found.negligible_from(found.whole, at_once, energy))
-        ends = min(ends, int(line.size / (1 + fades)))
-        count = min(int(ends * (1 + fades)) + 2, line.size)
+        count = int(ends * (1 + fades)) + 2
+        if count <= BATCH.frequencies(system.ports**2):
+            count = _sixteenths(count)
     else:
-        count = min(stated, line.size)
-        ends = int(count / (1 + fades))
+        count = stated
+    count = min(count, line.size)
+    ends = int(count / (1 + fades))
     # What a sharp cut discards would ring on, and the window raises what comes late.
     fade = 1.0 - smoothest_step((np.arange(count) - ends + 1) / max(count - ends, 1))
     if truncation is None:
@@ -319,7 +328,13 @@ def _with_points(system: Sized, line: Line, points: float) -> Line:
         TRANSFORM.bytes_per_sample * system.ports * points,
         f"a period of {line.period:.4g} s solved in steps of {line.period / points:.3g} s",
     )
-    return replace(line, points=scipy.fft.next_fast_len(int(points), real=True))
+    return line.solved_in(scipy.fft.next_fast_len(int(points), real=True))
+
+
+def _sixteenths(count: int) -> int:
+    """Round a number up in its fifth binary digit: what is known of a system at one road's frequencies serves more."""
+    step = 1 << max(count.bit_length() - 5, 0)
+    return -(-count // step) * step
 
 
 def _harmonics(line: Line, step: float) -> int:
@@ -338,6 +353,6 @@ def _beyond(found: Influence, ends: int, count: int) -> FloatArray:
 
 def _stiffens(system: Sized, line: Line, found: Influence) -> bool:
     """Tell whether a system answers the highest frequency of all with little."""
-    highest = replace(line, points=SAMPLING.highest)
+    highest = line.solved_in(SAMPLING.highest)
     answered = system.per_unit(highest.omega(slice(highest.size - 1, None)))[1][..., 0]
     return bool((answered <= SAMPLING.stiff * found.whole.gain.max(axis=-1)).all())

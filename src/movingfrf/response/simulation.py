@@ -10,7 +10,7 @@ import numpy as np
 import movingfrf.results.findings as find
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.progress import Progress, silent
-from movingfrf._basics.remembered import recalled
+from movingfrf._basics.remembered import latest, recalled
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.accuracy import hidden, past_the_end, truncated, unresolved
 from movingfrf.response.batches import unthreaded
@@ -21,7 +21,7 @@ from movingfrf.response.solve import solve
 from movingfrf.response.survey import SteadyState, survey
 from movingfrf.response.system import CoupledHistories, Response, System
 from movingfrf.response.truncation import Truncation
-from movingfrf.results.labels import attributes, labelled, ready, turned
+from movingfrf.results.labels import Labels, attributes, labelled, turned
 from movingfrf.roughness.excitation import Excitation, Touch, excite
 from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.vehicles.journey import Journey
@@ -159,10 +159,10 @@ def driven(
     require_profile(profile)
     progress("profile", 0.0)
     excitation = excitation_of(profile, vehicle, journey)
-    system = System(guideway=guideway, vehicle=vehicle, speed=journey.speed)
+    system = System.of(guideway, vehicle, journey.speed)
     progress("steady state", 0.0)
     driving = _driving(excitation, journey)
-    line = line_of(journey, vehicle, fading=excitation.fading(journey.distance) / journey.speed)
+    line = line_of(journey, vehicle, fading=excitation.fading / journey.speed)
     line = at_first(system, driving, line, journey.solved_step, SAMPLING.road)
     surveyed = survey(system, soon=looked_at(line, journey.truncation, driving.images))
     driven_by, response, histories, left_out = _solved(system, driving, line, journey, progress)
@@ -183,6 +183,7 @@ def driven(
     )
     # What is measured, and whether contact is kept, is taken from the response as it was solved.
     finer = driven_by.finer(journey.time_step) if not_shown else 1
+    solved_times = journey.time_step / finer * np.arange(journey.samples * finer if not_shown else 0)
     fine = response.histories(driven_by.line, finer) if not_shown else histories
     found = [
         *find.contact_lost(
@@ -199,15 +200,13 @@ def driven(
         *find.graded(*excitation.slopes),
     ]
     values = {
-        "time": journey.times,
         **_records(histories, steady, elevation),
-        "static_load": steady.load,
-        "static_deflection": steady.deflection,
+        # What is remembered stays.
+        "static_load": steady.load.copy(),
+        "static_deflection": steady.deflection.copy(),
     }
     if not_shown:
-        times = journey.time_step / finer * np.arange(journey.samples * finer)
-        seen = excitation.elevation(journey.speed * times)
-        values["solved_time"] = times
+        seen = excitation.elevation(journey.speed * solved_times)
         values |= {f"solved_{name}": value for name, value in _records(fine, steady, seen).items()}
     settings = attributes(
         "coupled",
@@ -224,7 +223,13 @@ def driven(
         profile_steps="\n".join(profile.steps),
         findings=found,
     )
-    return labelled(values, settings, recalled(vehicle, "labels", lambda: ready("coupled", vehicle.coordinates)))
+    steps = (journey.samples, journey.time_step, len(values), finer)
+
+    def labels() -> Labels:
+        times = {"time": journey.times, "solved_time": solved_times} if not_shown else {"time": journey.times}
+        return Labels.of(steps, labelled({**times, **vehicle.coordinates, **values}, settings))
+
+    return latest(vehicle, "labels", lambda known: known.steps == steps, labels).on(values, settings)
 
 
 def excitation_of(profile: Profile, vehicle: Vehicle, journey: Journey) -> Excitation:
@@ -283,7 +288,7 @@ def _solved(
 
 def _driving(excitation: Excitation, journey: Journey) -> Driving:
     """Tell of a road in time."""
-    speed, short = journey.speed, excitation.short_waves(journey.distance)
+    speed, short = journey.speed, excitation.short_waves
     if short is not None:
         short = short._replace(energy=short.energy / speed, whole=short.whole / speed)
     return Driving(
@@ -344,12 +349,13 @@ def line_of(journey: Journey, vehicle: Vehicle, *, fading: float = 0.0) -> Line:
     ValueError
         If memory would not hold the result.
     """
-    line = Line(
-        samples=journey.samples,
-        time_step=journey.time_step,
-        dying=max(-float(vehicle.poles.real.max()), 0.0) if vehicle.poles.size else 0.0,
-        fading=fading,
-        cut=Truncation.stated(journey.truncation).width,
-    )
+    asked = (journey.samples, journey.time_step, fading, Truncation.stated(journey.truncation).width)
+
+    def make() -> Line:
+        samples, time_step, _, cut = asked
+        dying = max(-float(vehicle.poles.real.max()), 0.0) if vehicle.poles.size else 0.0
+        return Line(samples=samples, time_step=time_step, dying=dying, fading=fading, cut=cut)
+
+    line = latest(vehicle, "line", lambda line: (line.samples, line.time_step, line.fading, line.cut) == asked, make)
     require_record(line, len(vehicle.contacts) + len(vehicle.dof_names))
     return line

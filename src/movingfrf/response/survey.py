@@ -71,6 +71,11 @@ def survey(system: System, soon: ComplexArray | None = None) -> Survey:
     SolveError
         If vehicle and guideway are unstable together.
     """
+    return recalled(system, "survey", lambda: _surveyed(system, soon))
+
+
+def _surveyed(system: System, soon: ComplexArray | None) -> Survey:
+    """Look at a system for the first time."""
     critical_speed = float(system.guideway.critical_speed)
     findings = [*find.near_critical(system.speed, critical_speed), *findings_of(system.guideway)]
     batch = BATCH.frequencies(system.entries)

@@ -11,13 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from movingfrf._basics.arrays import BoolArray, ComplexArray, FloatArray, IntArray, handed
 from movingfrf._basics.compiling import loops_for
-from movingfrf._basics.remembered import Remembering, recalled, remembered
+from movingfrf._basics.remembered import Remembering, latest, recalled, remembered, sharing
 from movingfrf.guideways.guideway import Guideway
 from movingfrf.guideways.track import Track
 from movingfrf.guideways.waves import Seen, refuse, require_finite, waves
@@ -131,6 +131,21 @@ class Distinct(NamedTuple):
         return cls(distinct, which.reshape(offsets.shape))
 
 
+class PerUnit(NamedTuple):
+    """What is found per unit of roughness."""
+
+    omega: bytes  # the frequencies
+    found: FloatArray
+
+
+class Travelled(NamedTuple):
+    """On what a vehicle travelled, how fast, and what is remembered of that."""
+
+    guideway: Track
+    speed: float
+    memory: dict[str, Any]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class System(Remembering):
     """A guideway and a vehicle that travels on it.
@@ -148,6 +163,23 @@ class System(Remembering):
     guideway: Guideway
     vehicle: Vehicle
     speed: float
+
+    @classmethod
+    def of(cls, guideway: Guideway, vehicle: Vehicle, speed: float) -> System:
+        """Put a vehicle on a guideway: with what is known if that is where it travelled last, and so fast.
+
+        A track stays as it is; what other guideways do is theirs.
+        """
+        system = cls(guideway=guideway, vehicle=vehicle, speed=speed)
+        if not isinstance(guideway, Track):
+            return system
+        known = latest(
+            vehicle,
+            "travelled",
+            lambda known: known.guideway is guideway and known.speed == speed,
+            lambda: Travelled(guideway, speed, {}),
+        )
+        return sharing(system, known.memory)
 
     @property
     def dynamics(self) -> Dynamics:
@@ -210,11 +242,8 @@ class System(Remembering):
         return recalled(self.vehicle, "distinct offsets", lambda: Distinct.of(self.vehicle.offsets["ahead"]))
 
     def at(self, omega: ComplexArray) -> Tables | CarByCar:
-        """Evaluate both sides at some frequencies [rad/s], or take what is known of them."""
-        for known in self._foreseen:
-            if known.omega.size == omega.size and (known.omega == omega).all():
-                return known
-        return self._evaluated(omega)
+        """Evaluate both sides at some frequencies [rad/s], or take what was foreseen, once."""
+        return self._foreseen.pop(omega.tobytes(), None) or self._evaluated(omega)
 
     def _evaluated(self, omega: ComplexArray) -> Tables | CarByCar:
         if self._numbers and (loops := loops_for("response.compiled", 0)):
@@ -231,6 +260,16 @@ class System(Remembering):
         distinct, which = self.offsets
         return Tables(omega, found.summed(distinct)[which], self.dynamics.stiffness(omega))
 
+    def _lately(self, omega: ComplexArray) -> Tables | CarByCar:
+        """Evaluate both sides, or take them again: of many roads the frequencies that are solved are often alike."""
+        if self.train:
+            return self.at(omega)
+
+        def fits(known: Tables) -> bool:
+            return known.omega.size == omega.size and bool((known.omega == omega).all())
+
+        return latest(self, "solved", fits, lambda: cast("Tables", self.at(omega)))
+
     def foresee(self, omegas: Sequence[ComplexArray]) -> None:
         """Evaluate both sides where `at` will be asked for them, as many sets in one go as a batch holds."""
         sizes = np.cumsum([0, *(omega.size for omega in omegas)])
@@ -238,12 +277,13 @@ class System(Remembering):
         if count < 2:
             return
         whole = self._evaluated(np.concatenate(omegas[:count]))
-        self._foreseen.extend(whole.between(first, last) for first, last in pairwise(sizes[: count + 1].tolist()))
+        for asked, (first, last) in zip(omegas, pairwise(sizes[: count + 1].tolist()), strict=False):
+            self._foreseen[asked.tobytes()] = whole.between(first, last)
 
     @property
     @remembered
-    def _foreseen(self) -> list[Tables | CarByCar]:
-        return []
+    def _foreseen(self) -> dict[bytes, Tables | CarByCar]:
+        return {}
 
     def per_unit(self, omega: ComplexArray) -> FloatArray:
         """Magnitudes of what the guideway adds to each output, then of all of it, per roughness under each contact.
@@ -252,11 +292,15 @@ class System(Remembering):
         (2, contact, output, frequency). A rigid road changes the displacement under the contacts by −W, hence the
         force by D W and the motion by −H W.
         """
+        if self._numbers and (loops := loops_for("response.compiled", 0)):
+            asked = omega.tobytes()
+            return latest(
+                self,
+                "per unit",
+                lambda known: known.omega == asked,
+                lambda: PerUnit(asked, self._per_unit(loops, omega)),
+            ).found
         count, tables = self.ports, self.at(omega)
-        if self._numbers and isinstance(tables, Tables) and (loops := loops_for("response.compiled", 0)):
-            vehicle = self._numbers[-1]
-            frf = handed(tables.frf.reshape(count * count, -1))
-            return loops.per_unit(frf, _each_from_each(count), handed(tables.stiffness), vehicle, handed(omega))
         # One case per contact under which the road is rough.
         unit = np.zeros((count, count, omega.size), complex)
         unit[np.arange(count), np.arange(count)] = 1.0
@@ -271,6 +315,16 @@ class System(Remembering):
             np.multiply(squared, found[:, ends[1] : ends[2]], out=found[:, ends[2] :])
         return sizes
 
+    def _per_unit(self, loops: Any, omega: ComplexArray) -> FloatArray:
+        """Do the same compiled."""
+        assert self._numbers
+        tables, count = cast("Tables", self.at(omega)), self.ports
+        frf = handed(tables.frf.reshape(count * count, -1))
+        found: FloatArray = loops.per_unit(
+            frf, _each_from_each(count), handed(tables.stiffness), self._numbers[-1], handed(omega)
+        )
+        return found
+
     def answer(self, omega: ComplexArray, roughness: ComplexArray, truncation: Truncation) -> Response:
         """Solve for the response to roughness [m], shape (*case, contact, frequency), at ascending frequencies.
 
@@ -281,14 +335,16 @@ class System(Remembering):
         if not reach:
             motion, force = self.dynamics.response(omega, -roughness)
             return Response(force, roughness[..., :0], motion)
-        if self._numbers and (loops := loops_for("response.compiled", 0)):
-            kept = truncation.taper(omega[:reach])
+        tables = self._lately(omega[:reach])
+        if self._numbers and isinstance(tables, Tables) and (loops := loops_for("response.compiled", 0)):
+            count, kept = self.ports, truncation.taper(tables.omega)
+            frf = tables.frf.reshape(count * count, -1)
             cases = handed(roughness).reshape(-1, *roughness.shape[-2:])
-            found, infinite = loops.answered(*self._numbers, handed(omega), kept, cases)
-            if infinite.any():
-                refuse(infinite, self.speed, omega)
+            found = loops.answered(
+                frf, _each_from_each(count), tables.stiffness, self._numbers[-1], handed(omega), kept, cases
+            )
             return Response(*(part.reshape(*roughness.shape[:-2], *part.shape[1:]) for part in found))
-        tables, displacement = self.at(omega[:reach]).admitted(truncation), -roughness
+        tables, displacement = tables.admitted(truncation), -roughness
         solved_force, deflection = tables.coupled(roughness[..., :reach])
         displacement[..., :reach] += deflection
         motion, force = self.dynamics.response(omega, displacement)

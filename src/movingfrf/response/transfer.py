@@ -84,7 +84,7 @@ def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: A
         BYTES_PER_VALUE * lines.size * contacts * (contacts + dofs),
         f"a transfer over {count(lines.size, 'frequency', 'frequencies')}",
     )
-    system = System(guideway=guideway, vehicle=vehicle, speed=speed)
+    system = System.of(guideway, vehicle, speed)
     surveyed = survey(system)
     omega = 2 * np.pi * lines
     # One case per contact under which the road is rough.

@@ -18,7 +18,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray
 from movingfrf._basics.enveloping import enveloping
-from movingfrf._basics.remembered import Remembering, remembered
+from movingfrf._basics.remembered import Remembering, latest, remembered
 from movingfrf._basics.short_waves import ShortWaves
 from movingfrf._basics.smooth import smooth_step, smooth_step_slope
 from movingfrf._basics.spline import Piecewise
@@ -74,6 +74,14 @@ class Touch(Remembering):
 
     @property
     @remembered
+    def told(self) -> tuple[bytes, ...]:
+        """All of it, to be compared."""
+        return tuple(
+            np.asarray(part).tobytes() for part in (self.positions, self.paths, self.footprints, self.cams)
+        )
+
+    @property
+    @remembered
     def alike(self) -> dict[tuple[int, float, float], list[int]]:
         """Contacts by path, footprint and cam: those that touch the same."""
         alike: dict[tuple[int, float, float], list[int]] = {}
@@ -126,6 +134,8 @@ class Excitation(Remembering):
         The same where stations are closest [m], though not closer than a thousandth of it.
     guessed : float
         How far beyond the end of the profile a footprint or a cam reaches on the journey [m].
+    distance : float
+        How far the reference point travels [m].
     """
 
     touch: Touch
@@ -138,6 +148,7 @@ class Excitation(Remembering):
     station: float
     closest: float
     guessed: float
+    distance: float
 
     @property
     def datum(self) -> float:
@@ -190,37 +201,27 @@ class Excitation(Remembering):
             rate[group.rows] = rising * speed
         return rate
 
-    def fading(self, travelled: float) -> float:
-        """Way in which the road may fade out past the end of a journey [m]: no faster than it rises as a rule.
+    @property
+    @remembered
+    def fading(self) -> float:
+        """Way in which the road may fade out past the end of the journey [m]: no faster than it rises as a rule.
 
-        Parameters
-        ----------
-        travelled : float
-            Length of the journey [m].
-
-        Returns
-        -------
-        float
-            From the greatest elevation at the end and the root mean square slope on the steepest way.
+        From the greatest elevation at the end and the root mean square slope on the steepest way.
         """
+        travelled = self.distance
         begins = zip(self.touch.paths, (self.start + self.touch.positions).tolist(), strict=True)
         steep = max(self.along[path].steepness(first, first + travelled) for path, first in begins)
         level = float(np.abs(self.elevation(np.array([travelled]))).max())
         return min(SETTING.slower * level, SETTING.ways * travelled * steep) / (steep or 1.0)
 
-    def short_waves(self, travelled: float) -> ShortWaves | None:
+    @property
+    @remembered
+    def short_waves(self) -> ShortWaves | None:
         """Tell how little of the road may be in its short waves, however finely it is sampled.
 
-        Parameters
-        ----------
-        travelled : float
-            How far the contacts travel [m].
-
-        Returns
-        -------
-        ShortWaves or None
-            From station to station, of what each contact meets on the way [m³]; None where stations are uneven.
+        From station to station, of what each contact meets on the journey [m³]; None where stations are uneven.
         """
+        travelled = self.distance
         touch, energy, whole = self.touch, list[float](), 0.0
         reach = 0.5 * (touch.footprints + touch.cams)
         for path, first, last in zip(
@@ -314,6 +315,19 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
     ValueError
         If the profile does not cover the journey or lacks a path.
     """
+
+    def fits(known: Excitation) -> bool:
+        same = (known.start, known.distance, known.blend) == (start, distance, blend)
+        return same and (known.touch is touch or known.touch.told == touch.told)
+
+    def make() -> Excitation:
+        return _excited(profile, touch, start=start, distance=distance, blend=blend)
+
+    return latest(profile, "excitation", fits, make) if profile.remembers else make()
+
+
+def _excited(profile: Profile, touch: Touch, *, start: float, distance: float, blend: float) -> Excitation:
+    """Let contacts travel along a profile that knows of no such journey."""
     hindmost, foremost = start + touch.positions.min(), start + touch.positions.max()
     require_cover(profile, hindmost, foremost + distance, touch.paths)
     # A profile without columns is the same for all paths.
@@ -338,6 +352,7 @@ def excite(profile: Profile, touch: Touch, *, start: float, distance: float, ble
         station=station,
         closest=closest,
         guessed=max(start + distance + reach - float(profile.stations[-1]), 0.0),
+        distance=distance,
     )
 
 

@@ -127,7 +127,7 @@ def _transformed(case: Case, guideway: Guideway) -> Solve:
         return lambda loads: replace(passage, loads=loads).run()
     # Copies remember nothing: no batch finds done what another one did. What they imply is prepared.
     known, vehicle, journey = copy(guideway), copy(case.vehicle), case.journey
-    survey(System(guideway=known, vehicle=vehicle, speed=journey.speed))
+    survey(System.of(known, vehicle, journey.speed))
     return lambda profile: driven(known, vehicle, profile, journey)
 
 
@@ -252,7 +252,7 @@ class Method:
             return "the moving impulse response of the struck road"
         if self.divides:
             return "the mesh, the factorised matrices and, with a vehicle, the smooth run-in"
-        return "what the guideway and, with a vehicle, that imply: critical speed, modes"
+        return "what the guideway and, with a vehicle, that imply: critical speed, modes, moving FRFs"
 
 
 FOR_VEHICLE: dict[str, Method] = {
