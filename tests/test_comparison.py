@@ -190,7 +190,7 @@ def test_the_report_says_what_is_shared(found):
     page = render(found)
     for words in (
         "A batch of 4 cases that differ by their profile alone shares the set-up: ",
-        "what the guideway and, with a vehicle, that imply: critical speed, modes (moving-frf)",
+        "what the guideway and, with a vehicle, that imply: critical speed, modes, moving FRFs (moving-frf)",
         "the moving impulse response of the struck road (moving-frf-fe, duhamel)",
         "and, with a vehicle, the smooth run-in (cdfm, cdfm-window, sim)",
         "set-up / 4 + solving",

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import copy
+import gc
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from threading import Barrier
 
+import numpy as np
 import pytest
 
 import movingfrf as mf
@@ -131,6 +133,95 @@ def test_a_vehicle_knows_the_road_that_it_was_on_and_no_other():
             mf.simulate(road, vehicle, surface, speed=speed, duration=duration) for vehicle in (one, car())
         )
         assert found.identical(wanted)
+
+
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_what_is_remembered_changes_no_digit():
+    """Of one journey after another, each unlike the one before in something: as of values that remember nothing."""
+    tracks = [
+        mf.track(mf.EulerBernoulliBeam(1.573e7, 711.9), mf.Spring(stiffness, 3.0e4)) for stiffness in (4.0e6, 8.0e6)
+    ]
+    roads = [
+        mf.realise(mf.IsoRoad.of_class(letter, band=(0.02, 2.0)), length=70.0, start=-12.0, seed=seed)
+        for letter, seed in (("A", 0), ("A", 1), ("E", 0))
+    ]
+    cars = [
+        mf.quarter_car(
+            body_mass=400.0,
+            wheel_mass=40.0,
+            suspension_stiffness=2e4,
+            suspension_damping=1.5e3,
+            tyre_stiffness=2e5,
+            footprint=footprint,
+        )
+        for footprint in (0.0, 0.2)
+    ]
+    settings = {
+        "speed": [10.0, 12.0],
+        "duration": [1.0, 2.0],
+        "start": [0.0, 1.0],
+        "time_step": [1e-3, 2e-3, 0.05],
+        "truncation": [None, 0.0, 30.0, 70.0],
+        "blend": [5.0, 0.0],
+        "solved_step": [None, 5e-3],
+    }
+    random = np.random.default_rng(0)
+    track, road, car = tracks[0], roads[0], cars[0]
+    journey = {name: values[0] for name, values in settings.items()}
+    for turn in range(60):
+        # Something else, or nothing at all.
+        match what := random.choice([*settings, "track", "road", "car", "nothing"]):
+            case "track":
+                track = tracks[random.integers(2)]
+            case "road":
+                road = roads[random.integers(3)]
+            case "car":
+                car = cars[random.integers(2)]
+            case "nothing":
+                pass
+            case _:
+                journey[what] = settings[what][random.integers(len(settings[what]))]
+        found = mf.simulate(track, car, road, **journey)
+        wanted = mf.simulate(copy.copy(track), copy.copy(car), copy.copy(road), **journey)
+        assert found.identical(wanted), (turn, what, journey)
+
+
+def test_results_do_not_share_what_may_be_changed():
+    track, car = DAMPED["euler_bernoulli_winkler"], mf.sprung_mass(mass=400.0, stiffness=2e5, damping=1e3)
+    surface = mf.harmonic(amplitude=1e-3, wavelength=3.0, length=60.0, start=-20.0)
+    results = [mf.simulate(track, car, surface, speed=10.0, duration=0.5) for _ in range(4)]
+    wanted = results[0].copy(deep=True)
+    for result in results[:3]:
+        for name in result.data_vars:
+            result[name].values[...] = 0.0
+            result[name].attrs["units"] = "none"
+        result.attrs["speed"] = 0.0
+        for name in result.coords:
+            result[name].attrs["units"] = "none"
+    assert results[3].identical(wanted)
+    assert mf.simulate(track, car, surface, speed=10.0, duration=0.5).identical(wanted)
+
+
+def test_what_remembers_a_journey_is_let_go():
+    """What vehicle and profile remember does not lead back to them: nobody has to look for circles."""
+    flat = mf.Profile([-10.0, 0.0, 10.0, 40.0], [0.0] * 4)
+
+    def there():
+        kinds = [type(one) for one in gc.get_objects()]
+        return kinds.count(mf.Vehicle), kinds.count(mf.Profile)
+
+    gc.collect()
+    gc.disable()
+    try:
+        before = there()
+        for _ in range(3):
+            car, road = mf.sprung_mass(mass=400.0, stiffness=2e5, damping=1e3), replace(flat)
+            for _ in range(3):
+                mf.simulate(DAMPED["euler_bernoulli_winkler"], car, road, speed=10.0, duration=0.5)
+        del car, road
+        assert there() == before
+    finally:
+        gc.enable()
 
 
 def test_a_road_that_may_change_is_asked_anew():

@@ -3,9 +3,9 @@
     python tools/calls.py [--duration SECONDS] [--modules] [CASE …]     cases: run, random, compare, profile
 
 A call that leads from a lower room back to a higher one is marked and ends with status 1: a callback, a method of
-an object that a lower room should not know. Frames outside the package are looked through, and so is what remembers
-(`_basics.remembered`): whoever asks is who calls. PYTHONPATH=…/src looks at another checkout, by the rooms that its
-own tests name. Progress is silent.
+an object that a lower room should not know. Frames outside the package are looked through, and so are what
+remembers (`_basics.remembered`) and what loads compiled loops (`_basics.compiling`): whoever asks is who calls.
+PYTHONPATH=…/src looks at another checkout, by the rooms that its own tests name. Progress is silent.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from typing import NamedTuple
 import movingfrf as mf
 
 SOURCE = Path(mf.__file__).parent
-SEEN_THROUGH = {"_basics.remembered"}
+SEEN_THROUGH = {"_basics.remembered", "_basics.compiling"}
 
 
 def levels() -> dict[str, int]:

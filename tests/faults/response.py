@@ -218,8 +218,16 @@ FAULTS = [
         "highest=gains[1].max(axis=-1)",
         "highest=gains[1, ..., :-1].max(axis=-1)",
     ),
-    Fault("compiled: it does not stiffen", "response/compiled.py", "frf[row, k] *= kept[k]", "frf[row, k] *= 1.0"),
-    Fault("foreseen elsewhere", "response/system.py", "and (known.omega == omega).all()", ""),
+    Fault("compiled: it does not stiffen", "response/compiled.py", "coupled(frf * kept,", "coupled(1.0 * frf,"),
+    Fault("compiled: harmful without what lies beyond", "response/compiled.py", "beyond[case, output]\n", "0.0\n"),
+    Fault("remembered: another guideway", "response/system.py", "known.guideway is guideway and ", ""),
+    Fault("remembered: another speed", "response/system.py", " and known.speed == speed", ""),
+    Fault("remembered: other frequencies", "response/system.py", " and bool((known.omega == omega).all())", ""),
+    Fault("remembered: gains elsewhere", "response/system.py", "known.omega == asked", "True"),
+    Fault(
+        "remembered: another line", "response/simulation.py", "known.cut) == asked", "known.cut)[:2] == asked[:2]"
+    ),
+    Fault("remembered: other times", "response/simulation.py", "known.steps == steps", "True"),
     Fault("one car counts", "response/along.py", "self.order.kind.count(number)", "1"),
     Fault("Cramer's rule turned", "response/batches.py", "a * second - c * first", "a * second + c * first"),
     Fault(

@@ -452,4 +452,26 @@ FAULTS = [
         "setdefault(blake2b(column + 0.0).digest()",
         "setdefault(bytes([path])",
     ),
+    Fault(
+        "remembered: excitation of another journey",
+        "roughness/excitation.py",
+        "== (start, distance, blend)",
+        "[:1] == (start,)",
+    ),
+    Fault("remembered: other contacts", "roughness/excitation.py", "known.touch.told == touch.told", "True"),
+    Fault(
+        "compiled: a spline kinked at its end", "_basics/compiled.py", "(width - both * above[size - 2])", "width"
+    ),
+    Fault(
+        "compiled: prediction from all errors",
+        "_basics/compiled.py",
+        "for n in range(size - step):\n            power",
+        "for n in range(size):\n            power",
+    ),
+    Fault(
+        "compiled: predicted backwards",
+        "_basics/compiled.py",
+        "record[n - 1 - before]",
+        "record[n - order + before]",
+    ),
 ]

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from copy import copy
 
 import numpy as np
 import pytest
 
 import movingfrf as mf
 from movingfrf._basics.compiling import PATIENCE, compiling, loops_for, numba_is_there, usable
+from movingfrf._basics.prediction import predicted, predicting
 from movingfrf._basics.spline import cubic
 from movingfrf.response.influence import influence
 from movingfrf.response.line import Line
@@ -117,6 +119,48 @@ def test_splines():
                 np.testing.assert_allclose(one, other, rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize("ends", [{}, {"first": 0.3}, {"last": -1.0}, {"first": 0.1, "last": 0.2}])
+def test_making_splines(ends):
+    """Of few or many knots, even or not, some of them far closer than others."""
+    random = np.random.default_rng(3)
+    for size in (4, 5, 6, 50, 3000):
+        for widths in (np.ones(size), random.uniform(0.5, 1.5, size), 10.0 ** random.uniform(-3, 1, size)):
+            knots, values = np.cumsum(widths), random.normal(size=size)
+            one, other = both(lambda x=knots, y=values: cubic(x, y, **ends).c)
+            for mine, others in zip(one, other, strict=True):
+                assert off(mine, others) < 1e-9
+
+
+def test_how_records_go_on():
+    random = np.random.default_rng(4)
+    rough = np.cumsum(np.cumsum(random.normal(size=3000)))
+    for record in (rough - rough.mean(), np.ones(100), np.zeros(100)):
+        (one, missed), (other, others) = both(lambda record=record: predicting(record, 16))
+        assert one.shape == other.shape
+        np.testing.assert_allclose(one, other, rtol=0, atol=1e-9)
+        assert missed == pytest.approx(others, rel=1e-9)
+        mine, theirs = both(lambda record=record, known=one: predicted(record, known, 60))
+        np.testing.assert_allclose(mine, theirs, rtol=0, atol=1e-9 * np.abs(record).max())
+
+
+def test_where_a_band_is_harmful():
+    """Anywhere within it, nowhere, and throughout: of several cases and ports, one of which drives nothing."""
+    random = np.random.default_rng(5)
+    system = System(guideway=DAMPED["euler_bernoulli_winkler"], vehicle=VEHICLES["half_truck"], speed=15.0)
+    line = Line(samples=1000, time_step=2e-3, points=4000)
+    energy = random.exponential(size=(3, system.ports, line.size)) / (1.0 + np.arange(line.size)) ** 3
+    energy[1, 0] = 0.0
+    with compiling(False):
+        found = influence(system, line, energy, 70.0, 1e-3)
+    ends = set()
+    for allowed in np.geomspace(1e-6, 2.0, 60):
+        for share in (found.whole, found.added):
+            one, other = both(lambda share=share, allowed=allowed: found.negligible_from(share, allowed, energy))
+            assert one == other
+            ends.add(one)
+    assert len(ends) > 40
+
+
 @pytest.mark.parametrize("contacts", [1, 2, 3, 5, 16])
 def test_contacts_on_a_guideway(contacts):
     """Of any size to each other: the largest entry of a column may stand anywhere in it."""
@@ -166,7 +210,8 @@ def test_what_bands_hold(vehicle):
 def test_a_whole_drive(road, vehicle, truncation):
     profile = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 4.0)), length=60.0, start=-6.0)
     driven, travel = (VEHICLES | RIGID)[vehicle], {"speed": 15.0, "duration": 2.0, "truncation": truncation}
-    one, other = both(lambda: mf.simulate(DAMPED[road], driven, profile, **travel))
+    # Copies remember nothing of each other. The road is the same: what goes on past its end magnifies rounding.
+    one, other = both(lambda: mf.simulate(DAMPED[road], copy(driven), profile, **travel))
     for name in ("contact_force", "deflection", "motion", "acceleration"):
         assert off(one[name].values, other[name].values) < 1e-9
     assert one.attrs["truncation"] == pytest.approx(other.attrs["truncation"], rel=1e-6)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields, is_dataclass
+from dataclasses import is_dataclass
 from functools import wraps
 from typing import Any, TypeVar
 
@@ -158,6 +158,6 @@ def _sealed(implied: Implied) -> Implied:
         for part in implied.values():
             _sealed(part)
     elif is_dataclass(implied):
-        for field in fields(implied):
-            _sealed(getattr(implied, field.name))
+        for name in implied.__dataclass_fields__:
+            _sealed(getattr(implied, name))
     return implied

@@ -126,7 +126,7 @@ def cubic(
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if y.ndim == 1 and x.size >= 4 and (loops := loops_for("_basics.compiled", x.size // 16)):
-        slopes = (np.nan if slope is None else float(slope) for slope in (first, last))
+        slopes = (np.nan if slope is None else float(np.asarray(slope)) for slope in (first, last))
         return Piecewise(x, loops.cubic(handed(x, float), handed(y, float), *slopes))
     width = np.diff(x)
     rise = np.diff(y) / width

@@ -182,7 +182,6 @@ def looked_at(line: Line, truncation: float | None, images: float | None) -> Com
         The middle of each band, and where images are.
     """
 
-
     def make() -> ComplexArray:
         omega = line.omega(middles(_bands(line, truncation), line.size))
         return omega if images is None else np.append(omega, images - 1j * line.decay)

@@ -15,7 +15,6 @@ import numpy as np
 import scipy.fft
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
-from movingfrf._basics.remembered import recalled
 from movingfrf._basics.short_waves import ShortWaves
 from movingfrf._basics.smooth import smoothest_step
 from movingfrf.response.batches import BATCH
@@ -139,14 +138,9 @@ class Driving(NamedTuple):
             return 0.0
         hidden = 0.5 * period * self.short.shorter(2 * stations)
         # Sampled so coarsely, images of waves fall back onto these, or near them.
-        images = recalled(line, f"images, {self.step}", lambda: _images(self.step / period * found.middles))
+        turns = self.step / period * found.middles
+        images = np.square(np.square(np.square([turns / (1.0 - turns), turns / (1.0 + turns)]))).sum(axis=0)
         return found.at_most(np.square(np.sqrt(hidden) + np.sqrt(found.power @ images)))
-
-
-def _images(turns: FloatArray) -> FloatArray:
-    """Square the two images that a spline has of waves, which turn so much from station to station."""
-    squares: FloatArray = np.square(np.square(np.square([turns / (1.0 - turns), turns / (1.0 + turns)])))
-    return squares.sum(axis=0)
 
 
 class Excited(NamedTuple):
@@ -332,7 +326,7 @@ def _with_points(system: Sized, line: Line, points: float) -> Line:
 
 
 def _sixteenths(count: int) -> int:
-    """Round a number up in its fifth binary digit: what is known of a system at one road's frequencies serves more."""
+    """Round a number up in its fifth binary digit: what one road needs of a system then serves others."""
     step = 1 << max(count.bit_length() - 5, 0)
     return -(-count // step) * step
 

@@ -21,7 +21,7 @@ from movingfrf.response.solve import solve
 from movingfrf.response.survey import SteadyState, survey
 from movingfrf.response.system import CoupledHistories, Response, System
 from movingfrf.response.truncation import Truncation
-from movingfrf.results.labels import Labels, attributes, labelled, turned
+from movingfrf.results.labels import Labels, attributes, turned
 from movingfrf.roughness.excitation import Excitation, Touch, excite
 from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.vehicles.journey import Journey
@@ -225,11 +225,11 @@ def driven(
     )
     steps = (journey.samples, journey.time_step, len(values), finer)
 
-    def labels() -> Labels:
-        times = {"time": journey.times, "solved_time": solved_times} if not_shown else {"time": journey.times}
-        return Labels.of(steps, labelled({**times, **vehicle.coordinates, **values}, settings))
-
-    return latest(vehicle, "labels", lambda known: known.steps == steps, labels).on(values, settings)
+    labels = latest(vehicle, "labels", lambda known: known.steps == steps, lambda: Labels(steps))
+    if labels.ready:
+        return labels.on(values, settings)
+    times = {"time": journey.times, "solved_time": solved_times} if not_shown else {"time": journey.times}
+    return labels.made({**times, **vehicle.coordinates, **values}, settings)
 
 
 def excitation_of(profile: Profile, vehicle: Vehicle, journey: Journey) -> Excitation:
@@ -356,6 +356,9 @@ def line_of(journey: Journey, vehicle: Vehicle, *, fading: float = 0.0) -> Line:
         dying = max(-float(vehicle.poles.real.max()), 0.0) if vehicle.poles.size else 0.0
         return Line(samples=samples, time_step=time_step, dying=dying, fading=fading, cut=cut)
 
-    line = latest(vehicle, "line", lambda line: (line.samples, line.time_step, line.fading, line.cut) == asked, make)
+    def fits(known: Line) -> bool:
+        return (known.samples, known.time_step, known.fading, known.cut) == asked
+
+    line = latest(vehicle, "line", fits, make)
     require_record(line, len(vehicle.contacts) + len(vehicle.dof_names))
     return line

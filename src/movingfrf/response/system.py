@@ -261,7 +261,7 @@ class System(Remembering):
         return Tables(omega, found.summed(distinct)[which], self.dynamics.stiffness(omega))
 
     def _lately(self, omega: ComplexArray) -> Tables | CarByCar:
-        """Evaluate both sides, or take them again: of many roads the frequencies that are solved are often alike."""
+        """Evaluate both sides, or take them again: many roads are solved at the same frequencies."""
         if self.train:
             return self.at(omega)
 
