@@ -8,6 +8,7 @@ are used, so that other checkouts can be timed on the same cases (`benchmarks.ag
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
@@ -123,6 +124,16 @@ def drive(guideway: str = "euler_bernoulli", vehicle: mf.Vehicle = TRUCK, **opti
     return partial(mf.simulate, GUIDEWAYS[guideway], vehicle, ROAD.profile, **(JOURNEY | options))
 
 
+def anew(*, road_alone: bool = False) -> Run:
+    """Prepare the reference case of copies, which remember nothing: of the profile, or of guideway and vehicle too."""
+
+    def run() -> object:
+        guideway, vehicle = (one if road_alone else copy(one) for one in (SCENARIO.guideway, TRUCK))
+        return mf.simulate(guideway, vehicle, copy(ROAD.profile), **JOURNEY)
+
+    return run
+
+
 def hour() -> Run:
     """Prepare one hour of travel, once everything is loaded and compiled: its memory is the journey's alone."""
     drive(duration=1.0)()
@@ -159,6 +170,8 @@ CASES: dict[str, Callable[[], Run]] = {
     "found_truncation": partial(drive, truncation=None),
     **{f"frf_{name}": partial(frf, name) for name in GUIDEWAYS},
     **{f"on_{name}": partial(drive, name) for name in GUIDEWAYS if name != "euler_bernoulli"},
+    "another_road": partial(anew, road_alone=True),
+    "all_anew": anew,
     "hundred_samples": partial(drive, duration=0.1),
     "quarter_car": partial(drive, "bending_damping", CAR, duration=5.0, truncation=None),
     "random_response": random,

@@ -183,7 +183,6 @@ def driven(
     )
     # What is measured, and whether contact is kept, is taken from the response as it was solved.
     finer = driven_by.finer(journey.time_step) if not_shown else 1
-    solved_times = journey.time_step / finer * np.arange(journey.samples * finer if not_shown else 0)
     fine = response.histories(driven_by.line, finer) if not_shown else histories
     found = [
         *find.contact_lost(
@@ -205,7 +204,9 @@ def driven(
         "static_load": steady.load.copy(),
         "static_deflection": steady.deflection.copy(),
     }
+    times = {"time": journey.times}
     if not_shown:
+        times["solved_time"] = solved_times = journey.time_step / finer * np.arange(journey.samples * finer)
         seen = excitation.elevation(journey.speed * solved_times)
         values |= {f"solved_{name}": value for name, value in _records(fine, steady, seen).items()}
     settings = attributes(
@@ -228,7 +229,6 @@ def driven(
     labels = latest(vehicle, "labels", lambda known: known.steps == steps, lambda: Labels(steps))
     if labels.ready:
         return labels.on(values, settings)
-    times = {"time": journey.times, "solved_time": solved_times} if not_shown else {"time": journey.times}
     return labels.made({**times, **vehicle.coordinates, **values}, settings)
 
 
