@@ -125,7 +125,7 @@ def drive(guideway: str = "euler_bernoulli", vehicle: mf.Vehicle = TRUCK, **opti
 
 
 def anew(*, road_alone: bool = False) -> Run:
-    """Prepare the reference case of copies, which remember nothing: of the profile, or of guideway and vehicle too."""
+    """Prepare the reference case of copies, which remember nothing: of the road alone, or of all there is."""
 
     def run() -> object:
         guideway, vehicle = (one if road_alone else copy(one) for one in (SCENARIO.guideway, TRUCK))
