@@ -122,6 +122,7 @@ _WHERE = {
     "cdfm": "stepping.coupled",
     "sim": "stepping.coupled",
     "compare": "studies.comparison.comparison",
+    "sweep": "studies.sweep.sweep",
     "export": "results.export",
     "measures": "metrics.measures",
     "assess": "metrics.measures",

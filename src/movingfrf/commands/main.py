@@ -22,7 +22,7 @@ COMMANDS = (
     ("kinds", "kinds"),
     ("scenarios", "vehicles", "run", "random", "measure"),
     ("export", "export"),
-    ("studies", "compare", "paper"),
+    ("studies", "compare", "sweep", "paper"),
     ("profiles", "profile", "convert"),
 )
 for _module, *_names in COMMANDS:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
 from movingfrf._basics import wording
+from movingfrf._basics.checks import ValidityWarning
 from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
 
 
@@ -112,3 +114,80 @@ def paper(
     for folder in sorted({name.parts[0] for name in written if len(name.parts) > 1}):
         number = sum(name.parts[0] == folder for name in written)
         console.print(f"wrote {wording.count(number, 'file')} into {output / folder}", soft_wrap=True)
+
+
+def sweep(
+    file: Path,
+    /,
+    *,
+    over: Annotated[list[str], Parameter(negative=())],
+    measures: str | None = None,
+    time_step: float | None = None,
+    part: str | None = None,
+    workers: int = 1,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+) -> None:
+    """Solve many cases of a scenario, and measure each.
+
+    Writes sweep.nc (netCDF) and table.csv, one line a case, into the folder; in its folder chunks lie cases that
+    are solved. Called again, it solves what is missing.
+
+    Parameters
+    ----------
+    file
+        The scenario.
+    over
+        What varies: run.speed=10,20,30, or first:last:count as run.speed=5:35:61, or first:last for whole numbers
+        as roughness.seed=0:99; once for each axis. Keys that vary together have commas between them and their
+        values semicolons: vehicle.tyre_stiffness.0,vehicle.tyre_stiffness.1=3e6,4e6;3.5e6,4.5e6.
+    measures
+        Names with commas between them, as contact_force_rms,dynamic_load_coefficient; all by default.
+    time_step
+        Step in place of the scenario's, in seconds.
+    part
+        Which part of the cases, as 3/64: for jobs of an array. A call without it then solves what is missing, and
+        writes the tables.
+    workers
+        Processes, each on one thread.
+    output
+        The folder to write into; out/NAME-sweep beside the scenario by default.
+    """
+    console = plain_console()
+    stages = Stages()
+    with stages:
+        stages.report("loading", 0.0)
+        from movingfrf._basics.netcdf_file import as_netcdf
+        from movingfrf._basics.output import replacing
+        from movingfrf.studies.sweep.files import as_csv
+        from movingfrf.studies.sweep.plan import plan_of
+        from movingfrf.studies.sweep.sweep import gathered, swept
+        from movingfrf.studies.sweep.words import axes_in, part_in
+
+        which = (1, 1) if part is None else part_in(part)
+        names = None if measures is None else [name.strip() for name in measures.split(",") if name.strip()]
+        plan = plan_of(file, axes_in(over), measures=names, time_step=time_step)
+        folder = output if output is not None else file.parent / "out" / f"{plan.name}-sweep"
+        kept = swept(plan, folder, part=which, workers=workers, progress=stages.report)
+        table = None
+        if part is None:
+            stages.report("writing", 0.0)
+            with warnings.catch_warnings():
+                # Findings are printed; no need to warn of them as well.
+                warnings.simplefilter("ignore", ValidityWarning)
+                table = gathered(plan, kept)
+            with replacing(folder) as files:
+                files |= {"sweep.nc": as_netcdf(table), "table.csv": as_csv(table)}
+    if table is None:
+        missing = len(kept.missing())
+        console.print(f"part {part} is solved; {wording.count(missing, 'chunk')} of other parts not yet")
+        return
+    cases = table.status.size
+    without = int((table.status.values != "").sum())
+    console.print(f"{wording.count(cases, 'case')}, {without or 'none'} without an answer")
+    if without:
+        reasons = sorted({str(why) for why in table.status.values.ravel() if why})
+        for why in reasons[:5]:
+            console.print(f"  {why}", soft_wrap=True)
+    print_findings(console, [finding.message for finding in plan.findings])
+    for name in ("sweep.nc", "table.csv"):
+        console.print(f"wrote {folder / name}", soft_wrap=True)

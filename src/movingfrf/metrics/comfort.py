@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -210,6 +211,16 @@ def weighting(name: str, frequency: ArrayLike) -> ComplexArray:
     return factor
 
 
+@lru_cache(maxsize=8)
+def _factors(name: str, samples: int, time_step: float) -> ComplexArray:
+    """Evaluate a weighting at the frequencies of a record; kept, since many records are alike."""
+    import scipy.fft
+
+    factors = weighting(name, scipy.fft.rfftfreq(samples, time_step))
+    factors.setflags(write=False)
+    return factors
+
+
 def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk", *, recorded: bool = False) -> FloatArray:
     """Weight acceleration histories.
 
@@ -257,7 +268,7 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk", *, rec
     if recorded:
         values, _, _ = _without_line(values, time_step)
     padded = scipy.fft.next_fast_len(len(values) + int(np.ceil(memory / time_step)), real=True)
-    factor = weighting(name, scipy.fft.rfftfreq(padded, time_step))
+    factor = _factors(name, padded, time_step)
     spectra = scipy.fft.rfft(values, padded, axis=0)
     return scipy.fft.irfft(spectra * factor[:, None], padded, axis=0)[: len(values)].reshape(shape)
 
@@ -456,7 +467,26 @@ def vibration(acceleration: FloatArray, time_step: float, weighting: str, *, sin
         Its measures.
     """
     first = samples_before(since, time_step, np.size(acceleration))
-    values = weighted(acceleration, time_step, weighting)[first:]
+    return felt(weighted(acceleration, time_step, weighting)[first:], time_step, weighting)
+
+
+def felt(values: FloatArray, time_step: float, weighting: str) -> Comfort:
+    """Measure a weighted acceleration.
+
+    Parameters
+    ----------
+    values : ndarray, shape (time,)
+        Weighted acceleration [m/s² or rad/s²].
+    time_step : float
+        Step in time [s].
+    weighting : str
+        Name of the weighting.
+
+    Returns
+    -------
+    Comfort
+        Its measures.
+    """
     return Comfort(
         weighting=weighting,
         rms=float(np.sqrt(np.mean(values**2))),

@@ -14,7 +14,8 @@ from movingfrf.metrics.comfort import (
     WEIGHTING_OF,
     WEIGHTINGS,
     Comfort,
-    vibration,
+    felt,
+    weighted,
 )
 from movingfrf.metrics.fatigue import spectral_fatigue
 from movingfrf.metrics.loads import (
@@ -25,6 +26,7 @@ from movingfrf.metrics.loads import (
     dynamic_load_coefficient,
     road_stress_factor,
     road_wear,
+    samples_before,
 )
 from movingfrf.results.labels import Measure
 
@@ -81,15 +83,27 @@ class History:
         return road_wear(self.result) if common_points(self.result).size else np.full(paths.size, np.nan)
 
     @cached_property
+    def _weighted(self) -> dict[int, FloatArray]:
+        return {}
+
+    @cached_property
     def _felt(self) -> dict[int, Comfort]:
         return {}
 
-    def felt(self, dof: int) -> Comfort:
-        """Make of an acceleration what ISO 2631-1 makes of it; weighted before it is cut."""
-        if dof not in self._felt:
+    def weighted(self, dof: int) -> FloatArray:
+        """Weight an acceleration before it is cut."""
+        if dof not in self._weighted:
             acceleration = self.whole.acceleration.values[:, dof]
+            first = samples_before(self.since, self.step, acceleration.size)
             weighting = self.place("dof", dof).words["weighting"]
-            self._felt[dof] = vibration(acceleration, self.step, weighting, since=self.since)
+            self._weighted[dof] = weighted(acceleration, self.step, weighting)[first:]
+        return self._weighted[dof]
+
+    def felt(self, dof: int) -> Comfort:
+        """Make of an acceleration what ISO 2631-1 makes of it."""
+        if dof not in self._felt:
+            weighting = self.place("dof", dof).words["weighting"]
+            self._felt[dof] = felt(self.weighted(dof), self.step, weighting)
         return self._felt[dof]
 
     def value(self, variable: str, number: int) -> float:
@@ -147,7 +161,7 @@ class OfHistory(NamedTuple):
     value: Callable[[History, int], float | None]  # at the number of a place; None if it is not asked for
     by: str = ""  # the standard or the source that defines it, where the name alone does not
     note: Callable[[History, int], str] = lambda of, number: ""  # what the source makes of it, or why there is none
-    usual: bool = False  # whether `run` reports it, or `measure` alone
+    usual: str = ""  # what tables of many cases call it, if `run` reports it; `measure` alone reports others
 
 
 class OfRandom(NamedTuple):

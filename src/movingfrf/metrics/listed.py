@@ -111,17 +111,17 @@ FORCES = Table(
     (
         Entry(
             "N",
-            OfHistory("static", _variable("static_load"), usual=True),
+            OfHistory("static", _variable("static_load"), usual="static_load"),
             OfRandom("static", _variable("static_load")),
         ),
         Entry(
             "N",
-            OfHistory("dynamic rms", _of(rms, "contact_force"), usual=True),
+            OfHistory("dynamic rms", _of(rms, "contact_force"), usual="contact_force_rms"),
             OfRandom("rms", _variable("contact_force_rms")),
         ),
         Entry(
             "N",
-            OfHistory("dynamic peak", _of(peak, "contact_force"), usual=True),
+            OfHistory("dynamic peak", _of(peak, "contact_force"), usual="contact_force_peak"),
             OfRandom("expected peak", _variable("contact_force_expected_peak"), SOURCES.peak),
         ),
         Entry(
@@ -129,10 +129,15 @@ FORCES = Table(
             random=OfRandom("crossing rate", _variable("contact_force_crossing_rate"), SOURCES.crossings),
         ),
         Entry("1", random=OfRandom("irregularity", _variable("contact_force_irregularity"), SOURCES.crossings)),
-        Entry("N", OfHistory("smallest total", _smallest, usual=True)),
+        Entry("N", OfHistory("smallest total", _smallest, usual="smallest_contact_force")),
         Entry(
             "1",
-            OfHistory("dynamic load coefficient", lambda of, n: of.coefficients[n], SOURCES.load, usual=True),
+            OfHistory(
+                "dynamic load coefficient",
+                lambda of, n: of.coefficients[n],
+                SOURCES.load,
+                usual="dynamic_load_coefficient",
+            ),
             OfRandom("dynamic load coefficient", _variable("dynamic_load_coefficient"), SOURCES.load, "load"),
         ),
         Entry(
@@ -182,17 +187,17 @@ DEFLECTIONS = Table(
     (
         Entry(
             "m",
-            OfHistory("static", _variable("static_deflection"), usual=True),
+            OfHistory("static", _variable("static_deflection"), usual="static_deflection"),
             OfRandom("static", _variable("static_deflection")),
         ),
         Entry(
             "m",
-            OfHistory("dynamic rms", _about_the_sag, usual=True),
+            OfHistory("dynamic rms", _about_the_sag, usual="deflection_rms"),
             OfRandom("rms", _variable("deflection_rms")),
         ),
         Entry(
             "m",
-            OfHistory("peak", _of(peak, "deflection"), usual=True),
+            OfHistory("peak", _of(peak, "deflection"), usual="deflection_peak"),
             OfRandom("expected peak", _variable("deflection_expected_peak"), SOURCES.peak),
         ),
         Entry("1/s", random=OfRandom("crossing rate", _variable("deflection_crossing_rate"), SOURCES.crossings)),
@@ -228,18 +233,24 @@ ACCELERATIONS = Table(
     (
         Entry(
             "{unit}/s²",
-            OfHistory("rms", _of(rms, "acceleration"), usual=True),
+            OfHistory("rms", _of(rms, "acceleration"), usual="acceleration_rms"),
             OfRandom("rms", _variable("acceleration_rms")),
         ),
         Entry(
             "{unit}/s²",
-            OfHistory("peak", _of(peak, "acceleration"), usual=True),
+            OfHistory("peak", _of(peak, "acceleration"), usual="acceleration_peak"),
             OfRandom("expected peak", _variable("acceleration_expected_peak"), SOURCES.peak),
         ),
         Entry("1/s", random=OfRandom("crossing rate", _variable("acceleration_crossing_rate"), SOURCES.crossings)),
         Entry(
             "{unit}/s²",
-            OfHistory("weighted rms", lambda of, n: of.felt(n).rms, "{by}", _reactions, usual=True),
+            OfHistory(
+                "weighted rms",
+                lambda of, n: rms(of.weighted(n)),
+                "{by}",
+                _reactions,
+                usual="weighted_acceleration_rms",
+            ),
             OfRandom("weighted rms ({weighting})", _variable("weighted_acceleration"), "ISO 2631-1"),
         ),
         Entry("{unit}/s²", OfHistory("weighted peak", lambda of, n: of.felt(n).peak, "{by}")),

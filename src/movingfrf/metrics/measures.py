@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf.metrics.comfort import WEIGHTINGS
 from movingfrf.metrics.entry import History, Random, Table
@@ -65,6 +66,56 @@ def measures(result: xr.Dataset, *, since: float = 0.0) -> list[Measure]:
         contact=range(result.sizes["contact"]),
         dof=range(result.sizes["dof"]),
     )
+
+
+# What quantities are called in a sentence.
+TOLD = {"force": "contact force"}
+
+
+class Usual(NamedTuple):
+    """A usual measure as tables of many cases have it."""
+
+    place: str  # of what there is one: contact or dof
+    words: str  # what it is
+    units: str
+    value: Callable[[History, int], float | None]
+
+
+# Those that `measures` lists of a vehicle, by what tables of many cases call them.
+USUAL: dict[str, Usual] = {
+    taken.usual: Usual(
+        table.place,
+        f"{TOLD.get(table.quantity, table.quantity)}, {taken.name}",
+        entry.units.format(unit="m").replace("s²", "s2") + (" or rad/s2" if "{" in entry.units else ""),
+        taken.value,
+    )
+    for table in TABLES
+    for entry in table.entries
+    if (taken := entry.history) and taken.usual
+}
+
+
+def usual_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
+    """Take usual measures of every contact and degree of freedom.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        The coupled response of a vehicle.
+    names : iterable of str
+        Keys of `USUAL`.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (contact,) or (dof,)
+        As `measures` has them.
+    """
+    history = History(whole=result)
+    found = {}
+    for name in names:
+        taken = USUAL[name]
+        found[name] = np.array([taken.value(history, number) for number in range(result.sizes[taken.place])], float)
+    return found
 
 
 def assess(

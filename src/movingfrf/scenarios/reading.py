@@ -108,10 +108,72 @@ def parse_scenario(
     ScenarioError
         With everything that is wrong with the text.
     """
-    tables = _tables(text, source)
+    return scenario_of(_tables(text, source), name=name, source=source, folder=folder, text=text)
+
+
+class Known:
+    """What was made of tables, to be taken again for equal ones: of each table the latest few.
+
+    What a value remembers of others (`latest`) is worth most where the same values meet again.
+    """
+
+    def __init__(self) -> None:
+        self._made: dict[str, dict[tuple[Any, ...], Any]] = {}
+
+    def taken(self, name: str, asked: tuple[Any, ...], make: Callable[[], Any]) -> Any:
+        """Take what was made of this, or make it; what could not be made (None) is not kept."""
+        # Roads may be long. [1 to 1000: memory and time only]
+        most = 4 if name == "roughness" else 64
+        made = self._made.setdefault(name, {})
+        if asked in made:
+            return made[asked]
+        new = make()
+        if new is not None:
+            made[asked] = new
+            while len(made) > most:
+                del made[next(iter(made))]
+        return new
+
+
+def scenario_of(
+    tables: dict[str, Any],
+    *,
+    name: str = "scenario",
+    source: str = "scenario",
+    folder: str | Path = ".",
+    text: str = "",
+    known: Known | None = None,
+) -> Scenario:
+    """Check the tables of a scenario.
+
+    Parameters
+    ----------
+    tables : dict
+        As TOML gives them.
+    name : str
+        Name of the scenario.
+    source : str
+        Where they come from, for messages.
+    folder : str or Path
+        Folder to which paths in them are relative.
+    text : str
+        What they were read from.
+    known : Known, optional
+        What was made of other tables.
+
+    Returns
+    -------
+    Scenario
+        Ready to run.
+
+    Raises
+    ------
+    ScenarioError
+        With everything that is wrong with them.
+    """
     if not tables:
         raise ScenarioError(source, [Fault("the file", "is empty; `movingfrf new` writes one to start from")])
-    builder = _Builder(Path(folder))
+    builder = _Builder(Path(folder), known)
     scenario = builder.scenario(tables, name, text)
     if builder.faults or scenario is None:
         raise ScenarioError(source, builder.faults)
@@ -137,8 +199,9 @@ def _tables(text: str, source: str) -> dict[str, Any]:
 class _Builder:
     """Turns tables into objects and collects what is wrong with them."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, known: Known | None = None) -> None:
         self.folder = folder
+        self.known = known
         self.faults: list[Fault] = []
 
     def scenario(self, tables: dict[str, Any], name: str, text: str) -> Scenario | None:
@@ -197,7 +260,15 @@ class _Builder:
 
     def section(self, tables: Mapping[str, Any], key: str, family: Family, **given: Any) -> Any:
         """Build one table of the file, if it is there; None, with the reasons in `faults`, if it is refused."""
-        return self._built(tables[key], family, key, **given) if key in tables else None
+        if key not in tables:
+            return None
+
+        def make() -> Any:
+            return self._built(tables[key], family, key, **given)
+
+        if self.known is None:
+            return make()
+        return self.known.taken(key, (repr(tables[key]), *given.values()), make)
 
     def _built(self, table: Any, family: Family, path: str, **given: Any) -> Any:
         """Build one table, or return None and leave the reasons in `faults`.

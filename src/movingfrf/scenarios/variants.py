@@ -1,0 +1,198 @@
+"""Scenarios that differ by the values of some keys; what is made of equal tables is made once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from movingfrf._basics.checks import nearest
+from movingfrf._basics.toml_file import tables_of, text_of
+from movingfrf.scenarios.kinds import DRIVE, PASSAGE
+from movingfrf.scenarios.reading import Known, scenario_of
+from movingfrf.scenarios.scenario import Scenario
+
+Tables = Mapping[str, Any]
+
+
+def tables_in(scenario: Scenario | str | Path | Tables) -> tuple[dict[str, Any], Path, str]:
+    """Give the tables of a scenario, the folder that its paths are relative to, and its name.
+
+    Parameters
+    ----------
+    scenario : Scenario, str, Path or mapping
+        A scenario, a file, or its tables.
+
+    Returns
+    -------
+    tables : dict
+        As the file says them.
+    folder : Path
+        The folder.
+    name : str
+        The scenario's name.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read.
+    """
+    if isinstance(scenario, Scenario):
+        return tables_of(scenario.text), scenario.folder, scenario.name
+    if isinstance(scenario, Mapping):
+        return plain(scenario), Path(), "scenario"
+    path = Path(scenario)
+    try:
+        return tables_of(text_of(path.read_bytes())), path.parent, path.stem
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def plain(value: Any) -> Any:
+    """Replace what NumPy makes of numbers and lists by what TOML makes of them, within tables too.
+
+    Examples
+    --------
+    >>> plain({"speed": np.float64(3.0), "axles": (np.int64(1), 2.5)})
+    {'speed': 3.0, 'axles': [1, 2.5]}
+    """
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist()) if isinstance(value, np.ndarray) else value.item()
+    if isinstance(value, Path):
+        return str(value)
+    return [plain(item) for item in value] if isinstance(value, list | tuple) else value
+
+
+def changed(tables: Any, path: Sequence[str], value: Any, *, before: str = "") -> Any:
+    """Put a value into tables, which stay as they are.
+
+    Parameters
+    ----------
+    tables : dict or list
+        Tables, or a list of them or of values.
+    path : sequence of str
+        Names of tables and of a key in them, numbers in lists.
+    value : object
+        The value.
+    before : str
+        What leads here, for the message.
+
+    Returns
+    -------
+    dict or list
+        The same but for this value.
+
+    Raises
+    ------
+    ValueError
+        If the path leads nowhere, with the nearest spelling.
+
+    Examples
+    --------
+    >>> changed({"run": {"speed": 10.0}}, ["run", "speed"], 12.0)
+    {'run': {'speed': 12.0}}
+    """
+    name, rest = path[0], path[1:]
+    place = f"{before}.{name}" if before else name
+    if isinstance(tables, list):
+        if not name.isdecimal() or int(name) >= len(tables):
+            numbers = f"0 to {len(tables) - 1}" if tables else "none"
+            raise ValueError(f"{place} names nothing: {before} is a list, with the numbers {numbers}")
+        number = int(name)
+        put = changed(tables[number], rest, value, before=place) if rest else value
+        return [*tables[:number], put, *tables[number + 1 :]]
+    if not isinstance(tables, dict):
+        raise ValueError(f"{place} names nothing: {before} is neither a table nor a list")
+    if rest and name not in tables:
+        raise ValueError(
+            f"{place} names nothing: there is no {name}{nearest(name, tables)} in {before or 'the file'}"
+        )
+    return {**tables, name: changed(tables[name], rest, value, before=place) if rest else value}
+
+
+def section_in(name: str, value: Any, folder: Path) -> Any:
+    """Turn the name of a file, or of an entry of the catalogue, into the table that it stands for.
+
+    Parameters
+    ----------
+    name : str
+        Name of the table.
+    value : object
+        What stands in its place; what is no text stays.
+    folder : Path
+        Folder to which the path is relative.
+
+    Returns
+    -------
+    object
+        A table.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, or holds no such table.
+    """
+    if name not in {**DRIVE, **PASSAGE} or not isinstance(value, str):
+        return value
+    ending = Path(value).suffix.lower()
+    if not ending and name == "vehicle":
+        return {"kind": "catalogue", "name": value}
+    if ending == ".toml":
+        tables, *_ = tables_in(folder / value)
+        if name in tables:
+            return tables[name]
+    others = {"vehicle": "vehicle_file", "roughness": "profile", "guideway": "sampled_guideway"}
+    if name not in others or (ending == ".toml" and name != "vehicle"):
+        raise ValueError(f"{name}: {value} holds no table [{name}]")
+    return {"kind": others[name], "file": value}
+
+
+class Variants:
+    """Scenarios that differ by the values of some keys.
+
+    Parameters
+    ----------
+    tables : dict
+        The scenario.
+    folder : Path
+        Folder to which paths in it are relative.
+    name : str
+        Its name.
+    """
+
+    def __init__(self, tables: dict[str, Any], folder: Path, name: str) -> None:
+        self.tables, self.folder, self.name = tables, folder, name
+        self._known = Known()
+
+    def at(self, values: Mapping[str, Any]) -> Scenario:
+        """Take some values.
+
+        Parameters
+        ----------
+        values : mapping of str to object
+            By the path of the key: `vehicle.tyre_stiffness.0`, or a whole table.
+
+        Returns
+        -------
+        Scenario
+            Checked.
+
+        Raises
+        ------
+        ScenarioError
+            With everything that is wrong.
+        ValueError
+            If a path leads nowhere.
+        """
+        tables: Any = self.tables
+        for path, value in values.items():
+            names = path.split(".")
+            there = section_in(names[0], value, self.folder) if len(names) == 1 else value
+            tables = changed(tables, names, there)
+        return scenario_of(tables, name=self.name, source=self.name, folder=self.folder, known=self._known)

@@ -1,0 +1,169 @@
+"""What a sweep is, as data: a scenario's tables, axes, measures. Equal plans are equal sweeps."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from movingfrf._basics.checks import Finding, checking
+from movingfrf._basics.version import VERSION
+from movingfrf.metrics.measures import USUAL
+from movingfrf.scenarios.kinds import ROUGHNESS
+from movingfrf.scenarios.scenario import Drive, Scenario
+from movingfrf.scenarios.variants import Variants, section_in, tables_in
+from movingfrf.studies.sweep.axes import Axes, axes_of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """A sweep before anything of it is computed.
+
+    Parameters
+    ----------
+    tables : dict
+        The scenario.
+    folder : Path
+        Folder to which paths in it are relative.
+    name : str
+        Its name.
+    axes : Axes
+        What varies.
+    measures : tuple of str
+        What is asked of each case.
+    """
+
+    tables: dict[str, Any]
+    folder: Path
+    name: str
+    axes: Axes
+    measures: tuple[str, ...]
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """All of it in numbers, texts, lists and tables."""
+        return {
+            "movingfrf": VERSION,
+            "name": self.name,
+            "folder": str(self.folder.resolve()),
+            "scenario": self.tables,
+            "axes": [
+                {"paths": list(axis.paths), "values": [list(each) for each in axis.values]} for axis in self.axes
+            ],
+            "measures": list(self.measures),
+        }
+
+    @property
+    def text(self) -> str:
+        """The same as JSON."""
+        return json.dumps(self.told, indent=1, allow_nan=False) + "\n"
+
+    @classmethod
+    def of_text(cls, text: str) -> Plan:
+        """Read what `text` says."""
+        told = json.loads(text)
+        axes = {tuple(axis["paths"]): axis["values"] for axis in told["axes"]}
+        return cls(
+            tables=told["scenario"],
+            folder=Path(told["folder"]),
+            name=told["name"],
+            axes=axes_of(axes),
+            measures=tuple(told["measures"]),
+        )
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What is to be known about the sweep as a whole."""
+        table = self.tables.get("roughness", {})
+        kind = ROUGHNESS.kinds.get(str(table.get("kind"))) if isinstance(table, dict) else None
+        realised = kind is not None and any(key.name == "seed" for key in kind.keys)
+        ways = [f"run.{key}" for key in ("speed", "speed_kmh", "duration", "start")]
+        varied = [path for path in self.axes.paths if path in ways]
+        if not (realised and varied):
+            return []
+        return [
+            Finding(
+                "other_roads",
+                f"a realised road is as long as its journey: for another {self.axes.names[varied[0]]} it is "
+                "another road of the same spectrum, and differences between cases are theirs as well; a profile "
+                "from a file is the same for all",
+            )
+        ]
+
+    @property
+    def variants(self) -> Variants:
+        """Its scenarios."""
+        return Variants(self.tables, self.folder, self.name)
+
+
+def plan_of(
+    scenario: Scenario | str | Path | Mapping[str, Any],
+    axes: Mapping[Any, Any],
+    *,
+    measures: Sequence[str] | None = None,
+    time_step: float | None = None,
+) -> Plan:
+    """Check what is asked for before anything is computed.
+
+    Parameters
+    ----------
+    scenario : Scenario, str, Path or mapping
+        A scenario, a file, or its tables.
+    axes : mapping
+        As `sweep` takes them.
+    measures : sequence of str, optional
+        Names of measures; None: all.
+    time_step : float, optional
+        Step in place of the scenario's [s].
+
+    Returns
+    -------
+    Plan
+        The sweep.
+
+    Raises
+    ------
+    ValueError
+        If a measure is unknown, an axis is none or none of its values suits the scenario, or that has no vehicle.
+    """
+    with checking() as check:
+        names = USUAL if measures is None else [measures] if isinstance(measures, str) else measures
+        asked = [check.choice("measures", name, USUAL) for name in names]
+        if not asked:
+            check.refuse("measures", f"must be some of {', '.join(USUAL)}, got none")
+        if time_step is not None:
+            time_step = check.positive("time_step", time_step, "s")
+    spanned = axes_of(axes)
+    tables, folder, name = tables_in(scenario)
+    if time_step is not None:
+        tables = {**tables, "run": {**tables.get("run", {}), "time_step": time_step}}
+    # Files that stand for tables are read once, here: what they hold is part of the plan.
+    read = {axis.paths: [_read(axis.at(place), folder) for place in range(axis.size)] for axis in spanned}
+    measured = tuple(dict.fromkeys(asked))
+    found = Plan(tables=tables, folder=folder, name=name, axes=axes_of(read), measures=measured)
+    if not isinstance(_first(found).case, Drive):
+        raise ValueError(f"{name}: prescribed loads are not swept; a vehicle and a road are needed")
+    return found
+
+
+def _read(values: Mapping[str, Any], folder: Path) -> list[Any]:
+    """Replace what stands for a whole table by the table."""
+    return [value if "." in path else section_in(path, value, folder) for path, value in values.items()]
+
+
+def _first(plan: Plan) -> Scenario:
+    """Find a case that is one, from the first on along one axis after the other; or say why the first is none."""
+    variants, start = plan.variants, [0] * len(plan.axes)
+    try:
+        return variants.at(plan.axes.values(start))
+    except ValueError as refused:
+        first = refused
+    for number, axis in enumerate(plan.axes):
+        for place in range(1, axis.size):
+            try:
+                return variants.at(plan.axes.values([*start[:number], place, *start[number + 1 :]]))
+            except ValueError:
+                continue
+    raise first

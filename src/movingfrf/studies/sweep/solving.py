@@ -1,0 +1,88 @@
+"""The cases of a sweep, one after the other: the measures of each, or why it has none."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import SolveError, ValidityWarning
+from movingfrf._basics.compiling import compiling, numba_is_there
+from movingfrf.metrics.measures import usual_of
+from movingfrf.scenarios.scenario import Drive
+from movingfrf.scenarios.variants import Variants
+from movingfrf.studies.sweep.plan import Plan
+
+
+class Solved(NamedTuple):
+    """Some cases of a sweep."""
+
+    values: dict[str, list[FloatArray]]  # of each measure: per case (contact,) or (dof,), empty where there is none
+    contacts: list[tuple[str, ...]]  # names, per case
+    dofs: list[tuple[str, ...]]
+    units: list[tuple[str, ...]]  # of the degrees of freedom
+    status: list[str]  # why a case has no answer; empty where it has
+    findings: list[str]  # codes of what is to be known about a case
+
+
+def solved(
+    plan: Plan, variants: Variants, first: int, last: int, each: Callable[[int], None] = lambda done: None
+) -> Solved:
+    """Solve some cases.
+
+    Parameters
+    ----------
+    plan : Plan
+        The sweep.
+    variants : Variants
+        Its scenarios, which remember what they made.
+    first, last : int
+        Which cases, in the order in which they are solved.
+    each : callable
+        Called with the number of cases that are done.
+
+    Returns
+    -------
+    Solved
+        The cases in this order.
+    """
+    found = Solved({name: [] for name in plan.measures}, [], [], [], [], [])
+    # Compiled or not, from the first case to the last: which of them a process solves changes no digit.
+    with compiling(numba_is_there()):
+        for done, places in enumerate(plan.axes.numbers(first, last)):
+            _add(found, plan.measures, variants, plan.axes.values(places))
+            each(done + 1)
+    return found
+
+
+def _add(found: Solved, measures: Sequence[str], variants: Variants, values: dict[str, object]) -> None:
+    """Solve a case, or say why it has no answer."""
+    contacts: tuple[str, ...] = ()
+    dofs: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
+    findings, status = "", ""
+    measured: dict[str, FloatArray] = dict.fromkeys(measures, np.zeros(0))
+    try:
+        scenario = variants.at(values)
+        case = scenario.case
+        if not isinstance(case, Drive):
+            raise ValueError("prescribed loads are not swept")
+        contacts = tuple(contact.name for contact in case.vehicle.contacts)
+        with warnings.catch_warnings():
+            # They are told of each case.
+            warnings.simplefilter("ignore", ValidityWarning)
+            result = scenario.run()
+            told = [*json.loads(result.attrs["findings"])]
+        dofs, units = (tuple(map(str, result[name].values)) for name in ("dof", "dof_unit"))
+        findings = ", ".join(dict.fromkeys(str(one["code"]) for one in told))
+        measured = usual_of(result, measures)
+    except (ValueError, SolveError) as refused:
+        status = "; ".join(line.strip() for line in str(refused).splitlines())
+    for name in measures:
+        found.values[name].append(measured[name])
+    for where, what in zip(found[1:], (contacts, dofs, units, status, findings), strict=True):
+        where.append(what)  # type: ignore[attr-defined]

@@ -1,0 +1,239 @@
+"""Many cases of a scenario: `sweep`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from movingfrf._basics.checks import checking
+from movingfrf._basics.progress import Progress, silent
+from movingfrf._basics.undoing import scratch
+from movingfrf._basics.version import VERSION
+from movingfrf.metrics.measures import USUAL
+from movingfrf.results.findings import announced
+from movingfrf.scenarios.scenario import Scenario
+from movingfrf.studies.sweep.chunks import InFolder, InMemory, Kept, chunk_size
+from movingfrf.studies.sweep.plan import Plan, plan_of
+from movingfrf.studies.sweep.solving import solved
+from movingfrf.studies.sweep.workers import carried_on
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# What names contacts and degrees of freedom: of which there is one for each, and where chunks have it.
+NAMED = {"contact_name": ("contact", "contacts"), "dof_name": ("dof", "dofs"), "dof_unit": ("dof", "units")}
+
+
+def sweep(
+    scenario: Scenario | str | Path | Mapping[str, Any],
+    axes: Mapping[Any, Any],
+    *,
+    measures: Sequence[str] | None = None,
+    time_step: float | None = None,
+    workers: int = 1,
+    store: str | Path | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Solve many cases of a scenario, and measure each.
+
+    Every case is the one that `Scenario.run` computes of the same tables. What does not change from case to case is
+    computed once.
+
+    Parameters
+    ----------
+    scenario : Scenario, str, Path or mapping
+        A vehicle on a rough road: a scenario, a file, or its tables as a dict.
+    axes : mapping of str, or tuple of str, to sequence
+        What varies: values by the dotted path of a key, `run.speed` or `vehicle.tyre_stiffness.0`, numbers in lists
+        from zero; keys in a tuple vary together, each value being a tuple as long. A whole table (`vehicle`) takes
+        tables, files or, for a vehicle, names of the catalogue.
+    measures : sequence of str, optional
+        What is asked of each case: `static_load`, `contact_force_rms`, `contact_force_peak`,
+        `smallest_contact_force`, `dynamic_load_coefficient`, `static_deflection`, `deflection_rms`,
+        `deflection_peak`, `acceleration_rms`, `acceleration_peak`, `weighted_acceleration_rms`; all by default.
+    time_step : float, optional
+        Step in time in place of the scenario's [s].
+    workers : int
+        Processes, each on one thread.
+    store : str or Path, optional
+        Folder in which solved cases are kept, chunk by chunk: called again, only what is missing is computed.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    xarray.Dataset
+        Measures over the axes, then contacts or degrees of freedom; `status` says why a case has no answer and is
+        empty where it has, `findings` what is to be known of it.
+
+    Raises
+    ------
+    ValueError
+        If an axis names nothing or none of its values suits the scenario, a measure is unknown, or the folder holds
+        another sweep.
+    OSError
+        If the folder cannot be written.
+
+    Warns
+    -----
+    ValidityWarning
+        If realised roads differ from case to case where their spectrum does not.
+
+    Examples
+    --------
+    >>> import movingfrf as mf
+    >>> tables = {
+    ...     "guideway": {"kind": "rigid_guideway"},
+    ...     "vehicle": {"kind": "sprung_mass", "mass": 400.0, "stiffness": 2e4, "damping": 1e3},
+    ...     "roughness": {"kind": "bump", "height": 0.02, "width": 1.0, "at": 5.0},
+    ...     "run": {"speed": 10.0, "duration": 2.0, "blend": 0.0},
+    ... }
+    >>> found = mf.sweep(tables, {"run.speed": [5.0, 10.0], "vehicle.damping": [1e3, 2e3, 4e3]})
+    >>> found.contact_force_peak.dims, found.contact_force_peak.shape
+    (('speed', 'damping', 'contact'), (2, 3, 1))
+    """
+    with checking() as check:
+        workers = check.whole("workers", workers, least=1)
+    plan = plan_of(scenario, axes, measures=measures, time_step=time_step)
+    with ExitStack() as stack:
+        folder = None if store is None else Path(store)
+        if folder is None and workers > 1:
+            folder = stack.enter_context(scratch())
+        kept = swept(plan, folder, workers=workers, progress=progress)
+        return gathered(plan, kept)
+
+
+def swept(
+    plan: Plan,
+    folder: Path | None,
+    *,
+    part: tuple[int, int] = (1, 1),
+    workers: int = 1,
+    progress: Progress = silent,
+) -> Kept:
+    """Solve what is missing of a sweep.
+
+    Parameters
+    ----------
+    plan : Plan
+        The sweep.
+    folder : Path or None
+        Where chunks are kept; None: in memory.
+    part : tuple of int
+        Which part (k, n) of the chunks is solved: every nth, from the kth on.
+    workers : int
+        Processes.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    Kept
+        All chunks that are there.
+    """
+    size = chunk_size(plan.axes.cases)
+    count = -(-plan.axes.cases // size)
+    kept: Kept = InMemory(count) if folder is None else InFolder(folder, plan, count)
+    mine = [number for number in kept.missing() if number % part[1] == part[0] - 1]
+    if workers > 1 and folder is not None and len(mine) > 1:
+        carried_on(folder, kept, mine, min(workers, len(mine)), progress)
+        return kept
+    variants = plan.variants
+    for done, number in enumerate(mine):
+
+        def told(cases: int, done: int = done) -> None:
+            progress("cases", (done + cases / size) / len(mine))
+
+        told(0)
+        kept.put(number, solved(plan, variants, number * size, (number + 1) * size, told))
+    return kept
+
+
+def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
+    """Make a table of all cases.
+
+    Parameters
+    ----------
+    plan : Plan
+        The sweep.
+    kept : Kept
+        All of its chunks.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `sweep` returns it.
+    """
+    import xarray as xr
+
+    axes, names = plan.axes, plan.axes.names
+    cases, shape, dims = axes.cases, axes.shape, axes.dimensions
+    chunks = list(kept.all())
+    numbers = [np.ravel_multi_index(places, shape) if shape else 0 for places in axes.numbers(0, cases)]
+
+    def laid(values: list[Any], made: np.ndarray) -> np.ndarray:
+        """Lay what cases have, in the order in which they were solved, out over the axes."""
+        for number, value in zip(numbers, values, strict=True):
+            if made.ndim == 1:
+                made[number] = value
+            else:
+                made[number, : len(value)] = value
+        return made.reshape(*shape, *made.shape[1:])
+
+    def each(part: str) -> list[Any]:
+        return [one for chunk in chunks for one in getattr(chunk, part)]
+
+    variables: dict[str, Any] = {}
+    coordinates: dict[str, Any] = {}
+    for axis, dimension in zip(axes, dims, strict=True):
+        for path in axis.paths:
+            coordinates[names[path]] = (dimension, _coordinate(axis.along(path)), {"long_name": path})
+    places = {USUAL[name].place for name in plan.measures}
+    widths = {}
+    for label, (place, part) in NAMED.items():
+        if place in places:
+            words = each(part)
+            widths[place] = max(map(len, words), default=0)
+            coordinates[place] = (place, np.arange(widths[place]), {"long_name": f"number of the {place}"})
+            coordinates[label] = _named(words, widths[place], place, dims, laid)
+    for name in plan.measures:
+        usual = USUAL[name]
+        values = [value for chunk in chunks for value in chunk.values[name]]
+        made = laid(values, np.full((cases, widths[usual.place]), np.nan))
+        variables[name] = ((*dims, usual.place), made, {"units": usual.units, "long_name": usual.words})
+    for name, said in (("status", "why the case has no answer"), ("findings", "what is to be known of the case")):
+        variables[name] = (dims, laid(each(name), np.full(cases, "", object)), {"long_name": said})
+    attributes = {
+        "title": "Measures of many cases",
+        "kind": "sweep",
+        "movingfrf": VERSION,
+        "scenario": json.dumps(plan.tables),
+        "axes": json.dumps(plan.told["axes"]),
+        "findings": announced(plan.findings),
+    }
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def _coordinate(values: list[Any]) -> Any:
+    """Values along an axis as they can be labelled: tables and lists are numbered."""
+    if all(isinstance(value, int | float | str) for value in values):
+        return np.array(values, object if isinstance(values[0], str) else None)
+    called = [
+        value.get("name", value.get("kind", "table")) if isinstance(value, dict) else "values" for value in values
+    ]
+    return np.array([f"{word} {number}" for number, word in enumerate(called)], object)
+
+
+def _named(words: list[tuple[str, ...]], width: int, place: str, dims: tuple[str, ...], laid: Any) -> Any:
+    """Names of contacts or degrees of freedom: one for all cases where they are the same, or each case its own."""
+    there = {each for each in words if each}
+    if len(there) <= 1:
+        (same,) = there or {("",) * width}
+        return (place, np.array(same, object))
+    return ((*dims, place), laid(words, np.full((len(words), width), "", object)))

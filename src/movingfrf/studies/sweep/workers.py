@@ -1,0 +1,74 @@
+"""Other processes that solve chunks of a sweep; the folder is all that they have in common."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from movingfrf._basics.progress import Progress
+from movingfrf._basics.undoing import undone
+from movingfrf.studies.sweep.chunks import Kept
+
+PATIENCE = 0.05  # seconds between looks at what is there [0.01 to 1]
+ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+
+
+def carried_on(folder: Path, kept: Kept, chunks: Sequence[int], workers: int, progress: Progress) -> None:
+    """Have chunks solved by other processes, every so-many-th by each, and wait for them.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the sweep lies.
+    kept : Kept
+        Its chunks.
+    chunks : sequence of int
+        Which are solved.
+    workers : int
+        How many processes.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Raises
+    ------
+    RuntimeError
+        If a process ends before it has solved what it was to solve, with what it said.
+    """
+    running: list[subprocess.Popen[str]] = []
+
+    def stop() -> None:
+        for process in running:
+            process.kill()
+            process.wait()
+
+    with undone(stop):
+        for number in range(workers):
+            mine = ",".join(map(str, chunks[number::workers]))
+            command = [sys.executable, "-m", "movingfrf.studies.sweep.worker", str(folder), mine]
+            process = subprocess.Popen(
+                command,
+                env=os.environ | ONE_THREAD,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            running.append(process)
+        wanted = set(chunks)
+        while any(process.poll() is None for process in running):
+            progress("cases", 1.0 - len(wanted & set(kept.missing())) / len(wanted))
+            _require_well(running)
+            time.sleep(PATIENCE)
+    _require_well(running)
+
+
+def _require_well(running: Sequence[subprocess.Popen[str]]) -> None:
+    """Refuse to go on where a process has ended with an error."""
+    for process in running:
+        if process.returncode:
+            said = process.stderr.read().strip().splitlines() if process.stderr else []
+            raise RuntimeError(f"a worker has ended with {process.returncode}: {said[-1] if said else 'no word'}")

@@ -1,0 +1,337 @@
+"""Many cases: each is the one that `run` computes, whatever order, workers and chunks; and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import movingfrf as mf
+from movingfrf.metrics.measures import USUAL
+from movingfrf.scenarios.reading import parse_scenario
+from movingfrf.scenarios.template import template
+from movingfrf.studies.sweep import chunks
+from movingfrf.studies.sweep.files import as_csv
+from movingfrf.studies.sweep.words import axes_in, part_in
+
+pytestmark = pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+
+TEXT = template("scenario").replace("duration = 24.0", "duration = 1.0")
+FILE = {"kind": "profile", "file": "road.csv"}
+
+
+@pytest.fixture
+def truck(tmp_path):
+    """Write a scenario into a folder, with a measured profile and another vehicle beside it."""
+    (tmp_path / "truck.toml").write_text(TEXT)
+    other = TEXT.replace("tyre_stiffness = [3.74e6, 4.60e6]", "tyre_stiffness = [3.0e6, 4.0e6]")
+    (tmp_path / "other.toml").write_text(other)
+    road = mf.realise(mf.IsoRoad.of_class("B"), length=60.0, start=-20.0, seed=5)
+    mf.write_profile(road, tmp_path / "road.csv")
+    return tmp_path / "truck.toml"
+
+
+AXES = {
+    "speed": {"run.speed": [9.0, 10.0, 11.0]},
+    "a number in a list": {"vehicle.tyre_stiffness.1": np.linspace(4e6, 5e6, 3)},
+    "guideway": {"guideway.foundation.stiffness": [4e6, 8e6], "guideway.beam.mass": [700.0]},
+    "class and seed": {"roughness.road_class": ["A", "C"], "roughness.seed": range(2)},
+    "linked": {("vehicle.suspension_stiffness.0", "vehicle.suspension_stiffness.1"): [(2e6, 4e6), (3e6, 5e6)]},
+    "a whole table": {"roughness": [FILE, {"kind": "bump", "height": 0.01, "width": 1.0, "at": 4.0}]},
+    "vehicles": {"vehicle": ["half_truck", "golden_car", "other.toml"]},
+    "a key that is not written": {"run.solved_step": [2e-3, 4e-3]},
+}
+
+
+def alone(truck, changes):
+    """Solve a case by itself, from a text in which the values stand."""
+    tables = chunks_tables(truck)
+    for path, value in changes.items():
+        *above, last = path.split(".")
+        there = tables
+        for name in above:
+            there = there[int(name)] if isinstance(there, list) else there[name]
+        there[int(last) if isinstance(there, list) else last] = value
+    folder = truck.parent
+    return parse_scenario(as_toml(tables), folder=folder).run()
+
+
+def chunks_tables(truck):
+    import tomllib
+
+    return tomllib.loads(truck.read_text())
+
+
+def as_toml(tables, name=""):
+    """Write tables as TOML."""
+    own = {key: value for key, value in tables.items() if not isinstance(value, dict)}
+    lines = [f"[{name}]"] if name else []
+    lines += [f"{key} = {value!r}".replace("'", '"').replace("True", "true") for key, value in own.items()]
+    for key, value in tables.items():
+        if isinstance(value, dict):
+            lines.append(as_toml(value, f"{name}.{key}" if name else key))
+    return "\n".join(lines)
+
+
+def whole(value, truck):
+    """Replace what stands for a vehicle by its table."""
+    if value == "other.toml":
+        return chunks_tables(truck.parent / "other.toml")["vehicle"]
+    return {"kind": "catalogue", "name": value} if isinstance(value, str) else value
+
+
+@pytest.mark.parametrize("axis", AXES)
+def test_a_case_is_what_run_computes(axis, truck):
+    table = mf.sweep(truck, AXES[axis])
+    dims = table.status.dims
+    for places in np.ndindex(table.status.shape):
+        changes = {}
+        for place, (key, values) in zip(places, AXES[axis].items(), strict=True):
+            if isinstance(key, tuple):
+                changes |= dict(zip(key, values[place], strict=True))
+            else:
+                value = np.asarray(values, object)[place] if not isinstance(values, np.ndarray) else values[place]
+                changes[key] = whole(value, truck) if key == "vehicle" else value
+        changes = {
+            path: value.item() if isinstance(value, np.generic) else value for path, value in changes.items()
+        }
+        case = table.isel(dict(zip(dims, places, strict=True)))
+        assert case.status.item() == ""
+        result = alone(truck, changes)
+        # By hand, what is easily said; and all of them as `run` reports them, in whatever order.
+        sizes = dict(result.sizes)
+        rms = np.sqrt((result.contact_force.values**2).mean(axis=0))
+        assert case.contact_force_rms.values[: sizes["contact"]] == pytest.approx(rms, rel=1e-9)
+        rms = np.sqrt((result.acceleration.values**2).mean(axis=0))
+        assert case.acceleration_rms.values[: sizes["dof"]] == pytest.approx(rms, rel=1e-9)
+        reported = [measure.value for measure in mf.measures(result)]
+        found = [
+            case[name].values[number]
+            for place in ("force", "deflection", "acceleration")
+            for number in range(sizes["dof" if place == "acceleration" else "contact"])
+            for name in USUAL
+            if place in name or (place == "force" and "load" in name)
+        ]
+        assert sorted(found) == pytest.approx(sorted(reported), rel=1e-9)
+        for name, usual in USUAL.items():
+            assert np.isnan(case[name].values[sizes[usual.place] :]).all()
+
+
+def test_names_and_units(truck):
+    table = mf.sweep(truck, {"run.speed": [9.0, 10.0], "vehicle": ["half_truck", "golden_car"]})
+    assert table.contact_force_rms.dims == ("speed", "vehicle", "contact")
+    assert table.contact_name.values[0].tolist() == [["front", "rear"], ["wheel", ""]]
+    assert {name: table[name].attrs["units"] for name in ("deflection_rms", "acceleration_rms")} == {
+        "deflection_rms": "m",
+        "acceleration_rms": "m/s2 or rad/s2",
+    }
+    assert set(USUAL) <= set(table.data_vars)
+    table.to_netcdf(truck.parent / "sweep.nc", engine="h5netcdf")
+    with xr.open_dataset(truck.parent / "sweep.nc", engine="h5netcdf") as again:
+        np.testing.assert_array_equal(again.contact_force_rms, table.contact_force_rms)
+
+
+def test_measures_that_are_asked_for(truck):
+    table = mf.sweep(truck, {"run.speed": [9.0]}, measures=["static_load", "dynamic_load_coefficient"])
+    assert set(table.data_vars) == {"static_load", "dynamic_load_coefficient", "status", "findings"}
+    assert "dof" not in table.dims
+    coarse = mf.sweep(truck, {"run.speed": [9.0]}, measures="contact_force_rms", time_step=5e-3)
+    (result,) = [replace_step(truck, 9.0, 5e-3)]
+    assert coarse.contact_force_rms.values[0] == pytest.approx(
+        np.sqrt((result.contact_force.values**2).mean(axis=0)), rel=1e-9
+    )
+
+
+def replace_step(truck, speed, step):
+    scenario = mf.read_scenario(truck)
+    text = scenario.text.replace("speed = 10.0", f"speed = {speed}").replace(
+        "time_step = 0.001", f"time_step = {step}"
+    )
+    return parse_scenario(text, folder=truck.parent).run()
+
+
+GRID = {"run.speed": [9.0, 10.0, 11.0], "vehicle.tyre_stiffness.0": [3e6, 4e6], "roughness.seed": [0, 1]}
+
+
+def test_nothing_depends_on_order_chunks_or_workers(truck, monkeypatch, tmp_path):
+    found = mf.sweep(truck, GRID)
+    turned = mf.sweep(truck, dict(reversed(GRID.items())))
+    for name in USUAL:
+        np.testing.assert_array_equal(turned[name].transpose(*found[name].dims), found[name])
+    monkeypatch.setattr(chunks, "CHUNKING", replace(chunks.CHUNKING, cases=5))
+    assert mf.sweep(truck, GRID).identical(found)
+    assert mf.sweep(truck, GRID, store=tmp_path / "kept").identical(found)
+    monkeypatch.undo()
+    assert mf.sweep(truck, GRID, workers=2).identical(found)
+    fewer = mf.sweep(truck, GRID | {"run.speed": [10.0]})
+    np.testing.assert_array_equal(fewer.contact_force_peak[0], found.contact_force_peak[1])
+
+
+def test_what_is_stored_is_not_computed_again(truck, tmp_path, monkeypatch):
+    monkeypatch.setattr(chunks, "CHUNKING", replace(chunks.CHUNKING, cases=3))
+    found = mf.sweep(truck, GRID, store=tmp_path / "kept")
+    files = sorted((tmp_path / "kept" / "chunks").iterdir())
+    assert len(files) == 4
+    written = {file: (file.stat().st_mtime_ns, file.read_bytes()) for file in files}
+    files[1].unlink()
+    assert mf.sweep(truck, GRID, store=tmp_path / "kept").identical(found)
+    for file, (when, what) in written.items():
+        assert file.read_bytes() == what
+        assert (file.stat().st_mtime_ns == when) == (file != files[1])
+
+
+def test_another_sweep_is_refused_and_so_is_a_damaged_chunk(truck, tmp_path):
+    kept = tmp_path / "kept"
+    mf.sweep(truck, {"run.speed": [9.0]}, store=kept)
+    with pytest.raises(ValueError, match="holds another sweep: it differs in axes"):
+        mf.sweep(truck, {"run.speed": [9.5]}, store=kept)
+    with pytest.raises(ValueError, match="holds another sweep: it differs in measures"):
+        mf.sweep(truck, {"run.speed": [9.0]}, store=kept, measures="static_load")
+    (file,) = (kept / "chunks").iterdir()
+    file.write_bytes(file.read_bytes()[:100])
+    with pytest.raises(ValueError, match="is damaged; remove it"):
+        mf.sweep(truck, {"run.speed": [9.0]}, store=kept)
+
+
+def test_a_case_without_an_answer_says_why_and_ends_nothing(truck):
+    # The second one would be off its profile, the third is no speed.
+    axes = {"run.speed": [10.0, 45.0, -1.0]}
+    table = mf.sweep(truck, axes | {"roughness": [FILE]})
+    first, second, third = table.status.values[:, 0].tolist()
+    assert first == ""
+    assert "must cover the journey" in second
+    assert "run.speed must be positive" in third
+    assert np.isnan(table.contact_force_rms.values[1:]).all()
+    assert np.isfinite(table.contact_force_rms.values[0]).all()
+
+
+def test_findings_of_cases_and_of_the_sweep(truck):
+    with pytest.warns(mf.ValidityWarning, match="another road of the same spectrum"):
+        table = mf.sweep(truck, {"run.speed": [9.0, 10.0], "roughness.road_class": ["A", "H"]})
+    assert table.findings.values[0].tolist()[0] == ""
+    assert "contact_lost" in table.findings.values[0, 1]
+
+
+REFUSED = {
+    "is not known here (did you mean 'speed'?)": {"run.sped": [9.0]},
+    "there is no tyer_stiffness (did you mean 'tyre_stiffness'?) in vehicle": {"vehicle.tyer_stiffness.0": [1.0]},
+    "is a list, with the numbers 0 to 1": {"vehicle.tyre_stiffness.2": [3e6]},
+    "must be a positive number": {"run.speed": ["fast"]},
+    "of one kind, got a number and a text": {"run.speed": [9.0, "fast"]},
+    "must be positive": {"run.speed": [-1.0, -2.0]},
+    "finite values, got nan": {"run.speed": [np.nan]},
+    "a list of values, got 9.0": {"run.speed": 9.0},
+    "a value at least, got none": {"run.speed": []},
+    "varies twice": {"run.speed": [9.0], ("run.speed", "run.start"): [(9.0, 0.0)]},
+    "exclude each other": {"vehicle": ["half_truck"], "vehicle.tyre_stiffness.0": [3e6]},
+    "must have 2 values at each place": {("run.speed", "run.start"): [(9.0,)]},
+    "named by the path of a key": {3: [9.0]},
+    "nothing.toml": {"vehicle": ["nothing.toml"]},
+}
+
+
+@pytest.mark.parametrize("words", REFUSED)
+def test_an_impossible_axis_is_refused_before_anything_is_computed(words, truck, monkeypatch):
+    monkeypatch.setattr("movingfrf.studies.sweep.sweep.solved", lambda *_: pytest.fail("computed"))
+    with pytest.raises(ValueError, match=re.escape(words)):
+        mf.sweep(truck, REFUSED[words])
+
+
+def test_what_else_is_refused(truck):
+    with pytest.raises(ValueError, match=r"measures must be one of .* got 'force'"):
+        mf.sweep(truck, {"run.speed": [9.0]}, measures=["force"])
+    with pytest.raises(ValueError, match="measures must be some of"):
+        mf.sweep(truck, {"run.speed": [9.0]}, measures=[])
+    with pytest.raises(ValueError, match="axes must be a mapping"):
+        mf.sweep(truck, [1.0])
+    with pytest.raises(ValueError, match="workers must be a whole number"):
+        mf.sweep(truck, {"run.speed": [9.0]}, workers=0)
+    with pytest.raises(ValueError, match="cannot be read"):
+        mf.sweep(truck.parent / "none.toml", {"run.speed": [9.0]})
+    with pytest.raises(ValueError, match="prescribed loads are not swept"):
+        mf.sweep(parse_scenario(template("loads")), {"run.speed": [9.0]})
+
+
+def test_axes_in_a_line():
+    assert axes_in(["run.speed=5:35:4"]) == {"run.speed": [5.0, 15.0, 25.0, 35.0]}
+    assert axes_in(["roughness.seed=3:5", "a=x:y"]) == {"roughness.seed": [3, 4, 5], "a": ["x:y"]}
+    assert axes_in(["a.x, a.y = 1,2;3:4"]) == {("a.x", "a.y"): [(1, 3), (2, 4)]}
+    assert axes_in(["vehicle=half_truck,other.toml", "b=true"]) == {
+        "vehicle": ["half_truck", "other.toml"],
+        "b": [True],
+    }
+    for line in ("speed", "=1", "run.speed=", "a=1:2:3:4", "a=1:2:0", "a=2:1", "a=1.5:2.5", "a,b=1", "a,b=1,2;3"):
+        with pytest.raises(ValueError, match="--over"):
+            axes_in([line])
+    with pytest.raises(ValueError, match="varies twice"):
+        axes_in(["a=1", "a=2"])
+    assert part_in("3/64") == (3, 64)
+    for text in ("65/64", "0/4", "3", "a/b", "-1/4"):
+        with pytest.raises(ValueError, match="--part"):
+            part_in(text)
+
+
+def command(*arguments, **how):
+    return subprocess.run(
+        [sys.executable, "-m", "movingfrf", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+        **how,
+    )
+
+
+def test_the_command_in_parts_and_in_one(truck):
+    over = ["--over", "run.speed=8:12:100", "--over", "roughness.seed=0,1"]
+    parts = truck.parent / "parts"
+    for part in ("1/2", "2/2"):
+        done = command("sweep", truck, *over, "--part", part, "-o", parts)
+        assert done.returncode == 0, done.stderr
+        assert not (parts / "table.csv").exists()
+    assert len(list((parts / "chunks").iterdir())) == 4
+    done = command("sweep", truck, *over, "-o", parts)
+    assert done.returncode == 0, done.stderr
+    assert "200 cases, none without an answer" in done.stdout
+    assert "another road of the same spectrum" in done.stdout
+    rows = list(csv.reader(io.StringIO((parts / "table.csv").read_text())))
+    assert rows[0][:3] == ["speed", "seed", "static_load front [N]"]
+    assert len(rows) == 201
+    found = mf.sweep(truck, {"run.speed": np.linspace(8.0, 12.0, 100), "roughness.seed": [0, 1]})
+    assert (parts / "table.csv").read_text() == as_csv(found)
+    refused = command("sweep", truck, "--over", "run.sped=9", "-o", truck.parent / "none")
+    assert refused.returncode == 2
+    assert not (truck.parent / "none").exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_killed_at_any_moment_and_started_again(truck):
+    """What is stored stays, and the end is the same, bit for bit."""
+    over = ["--over", "run.speed=8:12:150", "--over", "roughness.seed=0,1"]
+    kept = truck.parent / "kept"
+    for wait in (1.0, 1.3, 1.7):
+        process = subprocess.Popen(
+            [sys.executable, "-m", "movingfrf", "sweep", str(truck), *over, "-o", str(kept)],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        time.sleep(wait)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    before = {file: file.stat().st_mtime_ns for file in sorted(Path(kept).glob("chunks/*.npz"))}
+    done = command("sweep", truck, *over, "-o", kept)
+    assert done.returncode == 0, done.stderr
+    assert all(file.stat().st_mtime_ns == when for file, when in before.items())
+    whole_run = command("sweep", truck, *over, "-o", truck.parent / "at_once")
+    assert whole_run.returncode == 0, whole_run.stderr
+    assert (kept / "table.csv").read_bytes() == (truck.parent / "at_once" / "table.csv").read_bytes()
