@@ -259,7 +259,18 @@ CALLS = {
 
 
 # Tables of a truck or of an assembly, without a kind of their own; and what takes minutes or a file.
-OTHERS = {"Axle", "Body", "Hinge", "Suspension", "Unit", "accelerance", "compare", "read_profile", "struck_plate"}
+OTHERS = {
+    "Axle",
+    "Body",
+    "Hinge",
+    "Suspension",
+    "Unit",
+    "accelerance",
+    "compare",
+    "read_profile",
+    "struck_plate",
+    "sweep",
+}
 
 
 def test_every_public_function_is_among_them():

@@ -58,6 +58,22 @@ def test_half_truck_example():
     assert all(0.05 < value < 0.3 for pair in found.values() for value in pair)
 
 
+def test_three_speeds_example(tmp_path):
+    """A case of the sweep is the journey by itself."""
+    file = tmp_path / "road.csv"
+    mf.write_profile(mf.realise(mf.IsoRoad.of_class("B"), length=500.0, seed=1), file)
+    example = loaded("three_speeds")
+    table = example.compared(file)
+    assert table.speed_kmh.values.tolist() == [60.0, 80.0, 100.0]
+    lorry = mf.catalogue("tractor_semitrailer")
+    road = mf.track(mf.EulerBernoulliBeam(1.573e7, 711.9), mf.Spring(8.0e6, 3.0e4))
+    profile = mf.read_profile(file).profile
+    alone = mf.simulate(road, lorry, profile, speed=80 / 3.6, duration=15.0, start=20.0, time_step=2e-3)
+    coefficients = table.dynamic_load_coefficient.sel(speed_kmh=80.0)
+    np.testing.assert_allclose(coefficients, mf.dynamic_load_coefficient(alone), rtol=1e-9)
+    assert 0.1 < float(coefficients.max()) < 0.3
+
+
 @pytest.mark.skipif(not PAVED_ROAD.exists(), reason=f"the surveyed profile {PAVED_ROAD.name} is not there")
 @pytest.mark.filterwarnings("ignore:the profile begins with a grade of -0.51 %")
 def test_paved_road_example():

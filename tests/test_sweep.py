@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import doctest
 import io
 import os
 import re
@@ -126,6 +127,13 @@ def test_a_case_is_what_run_computes(axis, truck):
         assert sorted(found) == pytest.approx(sorted(reported), rel=1e-9)
         for name, usual in USUAL.items():
             assert np.isnan(case[name].values[sizes[usual.place] :]).all()
+
+
+def test_the_page_runs():
+    page = Path(__file__).parents[1] / "docs" / "sweeps.md"
+    found = doctest.testfile(str(page), module_relative=False)
+    assert found.attempted > 4
+    assert found.failed == 0
 
 
 def test_names_and_units(truck):

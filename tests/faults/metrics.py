@@ -173,8 +173,8 @@ FAULTS = [
     Fault(
         "weighting that starts anew",
         "metrics/comfort.py",
-        "values = weighted(acceleration, time_step, weighting)[first:]",
-        "values = weighted(np.asarray(acceleration)[first:], time_step, weighting)",
+        "felt(weighted(acceleration, time_step, weighting)[first:], ",
+        "felt(weighted(np.asarray(acceleration)[first:], time_step, weighting), ",
     ),
     Fault("limit the other way", "metrics/listed.py", "if name in felt.exceeded", "if name not in felt.exceeded"),
     Fault("one refusal for all", "metrics/entry.py", "if common_points(self.result).size", "if True"),

@@ -45,9 +45,12 @@ app = App(
     realising one; movingfrf measure out/truck/result.nc gives comfort, load on the road and fatigue of a result,
     movingfrf export out/truck/result.nc truck.csv a table (.mat for MATLAB, .uff for modal analysis).
 
-    6. movingfrf paper --output out/paper reproduces the paper on the moving FRF, figure by figure.
+    6. movingfrf sweep truck.toml --over run.speed=10,20,30 --output out/speeds solves many cases, and writes a line
+    of measures for each.
 
-    7. movingfrf profile road.csv describes a measured profile: class, waviness, IRI, what looks odd. movingfrf
+    7. movingfrf paper --output out/paper reproduces the paper on the moving FRF, figure by figure.
+
+    8. movingfrf profile road.csv describes a measured profile: class, waviness, IRI, what looks odd. movingfrf
     convert road.csv road.nc turns one format into another.
 
     Exit status: 0 done, 2 refused (a file, a value, a case without an answer), 130 interrupted, 1 a defect.""",

@@ -68,10 +68,6 @@ def measures(result: xr.Dataset, *, since: float = 0.0) -> list[Measure]:
     )
 
 
-# What quantities are called in a sentence.
-TOLD = {"force": "contact force"}
-
-
 class Usual(NamedTuple):
     """A usual measure as tables of many cases have it."""
 
@@ -85,7 +81,7 @@ class Usual(NamedTuple):
 USUAL: dict[str, Usual] = {
     taken.usual: Usual(
         table.place,
-        f"{TOLD.get(table.quantity, table.quantity)}, {taken.name}",
+        f"{table.quantity}, {taken.name}".replace("force, ", "contact force, "),
         entry.units.format(unit="m").replace("s²", "s2") + (" or rad/s2" if "{" in entry.units else ""),
         taken.value,
     )

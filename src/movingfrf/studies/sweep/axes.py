@@ -44,11 +44,6 @@ class Axis:
         return [each[number] for each in self.values]
 
 
-# Tables whose values take longest to be made, or to meet each other: in the order in which cases are solved these
-# change least often.
-DEAR = ("roughness", "guideway", "run")
-
-
 class Axes(tuple[Axis, ...]):
     """All axes of a sweep, in the order in which they were given."""
 
@@ -85,11 +80,13 @@ class Axes(tuple[Axis, ...]):
         return tuple(names[axis.paths[0]] for axis in self)
 
     def _order(self) -> list[int]:
-        """Numbers of the axes, those whose values are dear first."""
+        """Numbers of the axes in the order in which cases are solved: what is dear changes least often."""
+        # Tables whose values take longest to be made, or to meet each other.
+        dear_ones = ("roughness", "guideway", "run")
 
         def dear(number: int) -> tuple[int, int]:
             tables = {path.split(".")[0] for path in self[number].paths}
-            return min(DEAR.index(name) if name in DEAR else len(DEAR) for name in tables), number
+            return min(dear_ones.index(name) if name in dear_ones else len(dear_ones) for name in tables), number
 
         return sorted(range(len(self)), key=dear)
 

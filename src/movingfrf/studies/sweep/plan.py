@@ -45,7 +45,7 @@ class Plan:
     def told(self) -> dict[str, Any]:
         """All of it in numbers, texts, lists and tables."""
         return {
-            "movingfrf": VERSION,
+            "version": VERSION,
             "name": self.name,
             "folder": str(self.folder.resolve()),
             "scenario": self.tables,

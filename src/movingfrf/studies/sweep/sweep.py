@@ -13,9 +13,8 @@ import numpy as np
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.undoing import scratch
-from movingfrf._basics.version import VERSION
 from movingfrf.metrics.measures import USUAL
-from movingfrf.results.findings import announced
+from movingfrf.results.labels import attributes
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.studies.sweep.chunks import InFolder, InMemory, Kept, chunk_size
 from movingfrf.studies.sweep.plan import Plan, plan_of
@@ -24,10 +23,6 @@ from movingfrf.studies.sweep.workers import carried_on
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-# What names contacts and degrees of freedom: of which there is one for each, and where chunks have it.
-NAMED = {"contact_name": ("contact", "contacts"), "dof_name": ("dof", "dofs"), "dof_unit": ("dof", "units")}
 
 
 def sweep(
@@ -196,7 +191,11 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
             coordinates[names[path]] = (dimension, _coordinate(axis.along(path)), {"long_name": path})
     places = {USUAL[name].place for name in plan.measures}
     widths = {}
-    for label, (place, part) in NAMED.items():
+    for label, place, part in (
+        ("contact_name", "contact", "contacts"),
+        ("dof_name", "dof", "dofs"),
+        ("dof_unit", "dof", "units"),
+    ):
         if place in places:
             words = each(part)
             widths[place] = max(map(len, words), default=0)
@@ -209,15 +208,14 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
         variables[name] = ((*dims, usual.place), made, {"units": usual.units, "long_name": usual.words})
     for name, said in (("status", "why the case has no answer"), ("findings", "what is to be known of the case")):
         variables[name] = (dims, laid(each(name), np.full(cases, "", object)), {"long_name": said})
-    attributes = {
-        "title": "Measures of many cases",
-        "kind": "sweep",
-        "movingfrf": VERSION,
-        "scenario": json.dumps(plan.tables),
-        "axes": json.dumps(plan.told["axes"]),
-        "findings": announced(plan.findings),
-    }
-    return xr.Dataset(variables, coordinates, attributes)
+    settings = attributes(
+        "sweep",
+        "Measures of many cases",
+        scenario=json.dumps(plan.tables),
+        axes=json.dumps(plan.told["axes"]),
+        findings=plan.findings,
+    )
+    return xr.Dataset(variables, coordinates, settings)
 
 
 def _coordinate(values: list[Any]) -> Any:

@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 
-HOW = "KEY=VALUES, with values as 10,20,30 or first:last:count, or first:last for whole numbers"
-
 
 def axes_in(lines: Iterable[str]) -> dict[Any, list[Any]]:
     """Understand axes.
@@ -43,7 +41,7 @@ def axes_in(lines: Iterable[str]) -> dict[Any, list[Any]]:
         key, equals, values = line.partition("=")
         keys = tuple(each.strip() for each in key.split(","))
         if not equals or not all(keys) or not values.strip():
-            raise ValueError(f"--over {line} must be {HOW}")
+            raise _refused(line)
         columns = [_values(line, each) for each in values.split(";")] if len(keys) > 1 else [_values(line, values)]
         if len(columns) != len(keys):
             raise ValueError(f"--over {line} must have values for {len(keys)} keys, with ; between them")
@@ -57,6 +55,11 @@ def axes_in(lines: Iterable[str]) -> dict[Any, list[Any]]:
     return axes
 
 
+def _refused(line: str) -> ValueError:
+    how = "KEY=VALUES, with values as 10,20,30 or first:last:count, or first:last for whole numbers"
+    return ValueError(f"--over {line} must be {how}")
+
+
 def _values(line: str, text: str) -> list[Any]:
     """Understand the values of one key."""
     if ":" not in text or any(letter.isalpha() and letter not in "eE" for letter in text):
@@ -65,13 +68,13 @@ def _values(line: str, text: str) -> list[Any]:
     try:
         first, last, *count = map(_number, words)
     except ValueError:
-        raise ValueError(f"--over {line} must be {HOW}") from None
+        raise _refused(line) from None
     if not count:
         if not (isinstance(first, int) and isinstance(last, int) and first <= last):
             raise ValueError(f"--over {line}: {text} must be whole numbers, ascending; of others say how many")
         return list(range(first, last + 1))
     if len(count) > 1 or not isinstance(count[0], int) or count[0] < 1 or not math.isfinite(last - first):
-        raise ValueError(f"--over {line} must be {HOW}")
+        raise _refused(line)
     return np.linspace(first, last, count[0]).tolist()
 
 

@@ -11,10 +11,7 @@ from pathlib import Path
 
 from movingfrf._basics.progress import Progress
 from movingfrf._basics.undoing import undone
-from movingfrf.studies.sweep.chunks import Kept
-
-PATIENCE = 0.05  # seconds between looks at what is there [0.01 to 1]
-ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+from movingfrf.studies.sweep.chunks import CHUNKING, Kept
 
 
 def carried_on(folder: Path, kept: Kept, chunks: Sequence[int], workers: int, progress: Progress) -> None:
@@ -38,6 +35,7 @@ def carried_on(folder: Path, kept: Kept, chunks: Sequence[int], workers: int, pr
     RuntimeError
         If a process ends before it has solved what it was to solve, with what it said.
     """
+    one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     running: list[subprocess.Popen[str]] = []
 
     def stop() -> None:
@@ -51,7 +49,7 @@ def carried_on(folder: Path, kept: Kept, chunks: Sequence[int], workers: int, pr
             command = [sys.executable, "-m", "movingfrf.studies.sweep.worker", str(folder), mine]
             process = subprocess.Popen(
                 command,
-                env=os.environ | ONE_THREAD,
+                env=os.environ | one_thread,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.PIPE,
@@ -62,7 +60,7 @@ def carried_on(folder: Path, kept: Kept, chunks: Sequence[int], workers: int, pr
         while any(process.poll() is None for process in running):
             progress("cases", 1.0 - len(wanted & set(kept.missing())) / len(wanted))
             _require_well(running)
-            time.sleep(PATIENCE)
+            time.sleep(CHUNKING.look)
     _require_well(running)
 
 
