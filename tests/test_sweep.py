@@ -19,6 +19,7 @@ import pytest
 import xarray as xr
 
 import movingfrf as mf
+from movingfrf._basics.toml_file import as_toml, tables_of
 from movingfrf.metrics.measures import USUAL
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.template import template
@@ -57,7 +58,7 @@ AXES = {
 
 def alone(truck, changes):
     """Solve a case by itself, from a text in which the values stand."""
-    tables = chunks_tables(truck)
+    tables = tables_at(truck)
     for path, value in changes.items():
         *above, last = path.split(".")
         there = tables
@@ -68,27 +69,14 @@ def alone(truck, changes):
     return parse_scenario(as_toml(tables), folder=folder).run()
 
 
-def chunks_tables(truck):
-    import tomllib
-
-    return tomllib.loads(truck.read_text())
-
-
-def as_toml(tables, name=""):
-    """Write tables as TOML."""
-    own = {key: value for key, value in tables.items() if not isinstance(value, dict)}
-    lines = [f"[{name}]"] if name else []
-    lines += [f"{key} = {value!r}".replace("'", '"').replace("True", "true") for key, value in own.items()]
-    for key, value in tables.items():
-        if isinstance(value, dict):
-            lines.append(as_toml(value, f"{name}.{key}" if name else key))
-    return "\n".join(lines)
+def tables_at(file):
+    return tables_of(file.read_text())
 
 
 def whole(value, truck):
     """Replace what stands for a vehicle by its table."""
     if value == "other.toml":
-        return chunks_tables(truck.parent / "other.toml")["vehicle"]
+        return tables_at(truck.parent / "other.toml")["vehicle"]
     return {"kind": "catalogue", "name": value} if isinstance(value, str) else value
 
 
@@ -343,3 +331,55 @@ def test_killed_at_any_moment_and_started_again(truck):
     whole_run = command("sweep", truck, *over, "-o", truck.parent / "at_once")
     assert whole_run.returncode == 0, whole_run.stderr
     assert (kept / "table.csv").read_bytes() == (truck.parent / "at_once" / "table.csv").read_bytes()
+
+
+def test_run_with_another_value(truck):
+    """As of a file in which it stands; the text in the result is such a file."""
+    done = command("run", truck, "--set", "run.speed=12", "--set", "vehicle.tyre_stiffness.0=3e6", "--no-report")
+    assert done.returncode == 0, done.stderr
+    with xr.open_dataset(truck.parent / "out" / "truck" / "result.nc", engine="h5netcdf") as result:
+        text = TEXT.replace("speed = 10.0", "speed = 12.0").replace("[3.74e6, 4.60e6]", "[3.0e6, 4.60e6]")
+        wanted = parse_scenario(text).run().contact_force
+        np.testing.assert_allclose(result.contact_force, wanted, rtol=1e-9, atol=1e-6)
+        again = parse_scenario(result.attrs["scenario"])
+    assert again.journey.speed == 12.0
+    assert again.case == parse_scenario(text).case
+    for setting in ("run.sped=12", "run.speed", "run.speed=fast"):
+        refused = command("run", truck, "--set", setting)
+        assert refused.returncode == 2
+        assert setting.split("=")[0] in refused.stderr
+    assert command("run", truck, "--set", "run.speed=1", "--set", "run.speed=2").returncode == 2
+
+
+@pytest.mark.parametrize("name", ["scenario", "loads"])
+def test_tables_written_and_read_are_the_same(name):
+    tables = tables_of(template(name))
+    assert tables_of(as_toml(tables)) == tables
+    odd = {"a b": {'"': [{"x": 1, "y": [True, "é\n"]}], "z": {}}, "n": 1e300, "t": tables_of("t = 2020-01-02")["t"]}
+    assert tables_of(as_toml(odd)) == odd
+
+
+def test_random_responses(truck):
+    axes = {"run.speed": [9.0, 12.0], "vehicle": ["half_truck", "golden_car"], "roughness.road_class": ["A", "C"]}
+    table = mf.sweep(truck, axes, response="random")
+    assert (table.status == "").all()
+    for speed in axes["run.speed"]:
+        for number, name in enumerate(axes["vehicle"]):
+            road = parse_scenario(TEXT).guideway
+            wanted = mf.random_response(
+                road, mf.catalogue(name), mf.IsoRoad.of_class("C", band=(0.01, 6.0)), speed=speed
+            )
+            found = table.sel(speed=speed, road_class="C").isel(vehicle=number)
+            for measure in ("contact_force_rms", "weighted_acceleration", "dynamic_load_coefficient"):
+                values = found[measure].values
+                np.testing.assert_allclose(values[: wanted[measure].size], wanted[measure], rtol=1e-9)
+    one = mf.sweep(truck, {"run.speed": [9.0]}, response="random", measures="contact_force_rms")
+    assert set(one.data_vars) == {"contact_force_rms", "status", "findings"}
+    bump = {"kind": "bump", "height": 0.01, "width": 1.0, "at": 4.0}
+    without = mf.sweep(truck, {"roughness": [bump]}, response="random")
+    assert "has no spectrum" in without.status.item()
+    with pytest.raises(ValueError, match="response must be one of simulate, random"):
+        mf.sweep(truck, {"run.speed": [9.0]}, response="randon")
+    done = command("sweep", truck, "--random", "--over", "run.speed=9,12", "-o", truck.parent / "at_random")
+    assert done.returncode == 0, done.stderr
+    assert "contact_force_rms front [N]" in (truck.parent / "at_random" / "table.csv").read_text()

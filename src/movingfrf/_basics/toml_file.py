@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
 import tomllib
 from typing import Any
@@ -82,6 +84,59 @@ def tables_of(text: str) -> dict[str, Any]:
     except ValueError as error:  # TOML's own, or an integer of thousands of digits
         said = str(error)
         raise ValueError(f"is not TOML: {said}{_hint(said, text.splitlines())}") from None
+
+
+def as_toml(tables: dict[str, Any], path: str = "") -> str:
+    r"""Write TOML: tables under their heads, lists of tables within their key.
+
+    Parameters
+    ----------
+    tables : dict
+        Tables, keys and values, as `tables_of` gives them.
+    path : str
+        What leads to them.
+
+    Returns
+    -------
+    str
+        TOML that says the same.
+
+    Examples
+    --------
+    >>> print(as_toml({"run": {"speed": 22.0}, "vehicle": {"kind": "train", "car": {"kind": "bogie"}}}), end="")
+    [run]
+    speed = 22.0
+    <BLANKLINE>
+    [vehicle]
+    kind = "train"
+    <BLANKLINE>
+    [vehicle.car]
+    kind = "bogie"
+    """
+    own = [f"{_key(key)} = {_said(value)}\n" for key, value in tables.items() if not isinstance(value, dict)]
+    parts = [f"[{path}]\n" + "".join(own)] if path and (own or not tables) else own
+    for key, value in tables.items():
+        if isinstance(value, dict):
+            parts.append(as_toml(value, f"{path}.{_key(key)}" if path else _key(key)))
+    return "\n".join(parts)
+
+
+def _key(key: str) -> str:
+    """Write a key, in quotation marks where it needs them."""
+    return key if re.fullmatch(r"[\w-]+", key, re.ASCII) else json.dumps(key)
+
+
+def _said(value: Any) -> str:
+    """Write a value; JSON and TOML agree about texts, numbers and lists."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_key(key)} = {_said(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_said, value)) + "]"
+    if isinstance(value, bool | str):
+        return json.dumps(value)
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value.isoformat() if hasattr(value, "isoformat") else repr(value)
 
 
 def _hint(said: str, lines: list[str]) -> str:

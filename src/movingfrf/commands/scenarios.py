@@ -51,13 +51,18 @@ def new(file: Path | None = None, /, *, loads: bool = False, force: bool = False
     plain_console().print(f"wrote {file}", soft_wrap=True)
 
 
-def _read(file: Path) -> Scenario:
+def _read(file: Path, changes: list[str] | None = None) -> Scenario:
     """Read a scenario; what its guideway says of itself is printed with the results, not warned of as well."""
     from movingfrf.scenarios.reading import read_scenario
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)
-        return read_scenario(file)
+        if not changes:
+            return read_scenario(file)
+        from movingfrf.scenarios.variants import Variants, tables_in
+        from movingfrf.studies.sweep.words import values_in
+
+        return Variants(*tables_in(file)).at(values_in(changes))
 
 
 def check(file: Path, /) -> None:
@@ -139,6 +144,7 @@ def run(
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     method: str = "moving-frf",
     report: Annotated[bool, Parameter(negative="--no-report")] = True,
+    changes: Annotated[list[str] | None, Parameter(name="--set", negative=())] = None,
 ) -> None:
     """Solve a scenario; write result.nc, summary.json and report.html.
 
@@ -158,6 +164,8 @@ def run(
     report
         Whether to draw report.html, which takes half the time of a short run. Without it an earlier report goes,
         since it shows another result.
+    changes
+        Another value of a key, as run.speed=22 or vehicle.tyre_stiffness.0=3e6; once for each.
     """
     console = plain_console()
     stages = Stages()
@@ -174,7 +182,7 @@ def run(
         from movingfrf.scenarios.scenario import Drive
 
         stages.report("scenario", 0.0)
-        scenario = _read(file)
+        scenario = _read(file, changes)
         folder = output if output is not None else file.parent / "out" / scenario.name
         with replacing(folder) as files, warnings.catch_warnings():
             # Findings are printed with the results; no need to warn of them as well.

@@ -122,6 +122,7 @@ def sweep(
     *,
     over: Annotated[list[str], Parameter(negative=())],
     measures: str | None = None,
+    at_random: Annotated[bool, Parameter(name="--random", negative=())] = False,
     time_step: float | None = None,
     part: str | None = None,
     workers: int = 1,
@@ -142,6 +143,8 @@ def sweep(
         values semicolons: vehicle.tyre_stiffness.0,vehicle.tyre_stiffness.1=3e6,4e6;3.5e6,4.5e6.
     measures
         Names with commas between them, as contact_force_rms,dynamic_load_coefficient; all by default.
+    at_random
+        The response to all roads of the spectrum in place of one of them, as movingfrf random computes it.
     time_step
         Step in place of the scenario's, in seconds.
     part
@@ -165,7 +168,8 @@ def sweep(
 
         which = (1, 1) if part is None else part_in(part)
         names = None if measures is None else [name.strip() for name in measures.split(",") if name.strip()]
-        plan = plan_of(file, axes_in(over), measures=names, time_step=time_step)
+        response = "random" if at_random else "simulate"
+        plan = plan_of(file, axes_in(over), measures=names, response=response, time_step=time_step)
         folder = output if output is not None else file.parent / "out" / f"{plan.name}-sweep"
         kept = swept(plan, folder, part=which, workers=workers, progress=stages.report)
         table = None

@@ -15,7 +15,7 @@ from movingfrf.metrics.entry import History, Random, Table
 from movingfrf.metrics.fatigue import check_random
 from movingfrf.metrics.listed import TABLES, peak, rms
 from movingfrf.metrics.loads import after, check_coupled
-from movingfrf.results.labels import Measure, contact_names, listed
+from movingfrf.results.labels import SCHEMAS, Measure, contact_names, listed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -74,7 +74,7 @@ class Usual(NamedTuple):
     place: str  # of what there is one: contact or dof
     words: str  # what it is
     units: str
-    value: Callable[[History, int], float | None]
+    value: Callable[[History, int], float | None] | None  # how it is taken of a history
 
 
 # Those that `measures` lists of a vehicle, by what tables of many cases call them.
@@ -89,6 +89,32 @@ USUAL: dict[str, Usual] = {
     for entry in table.entries
     if (taken := entry.history) and taken.usual
 }
+
+
+# The statistics of a random response, one for each contact or degree of freedom.
+STATISTICS: dict[str, Usual] = {
+    name: Usual(label.dims[0], label.long_name, label.units, None)
+    for name, label in SCHEMAS["random"].items()
+    if label.dims in (("contact",), ("dof",)) and not label.coordinate
+}
+
+
+def statistics_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
+    """Take statistics of a random response.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What `random_response` returned.
+    names : iterable of str
+        Keys of `STATISTICS`.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (contact,) or (dof,)
+        As the result has them.
+    """
+    return {name: result[name].values for name in names}
 
 
 def usual_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
@@ -109,8 +135,9 @@ def usual_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
     history = History(whole=result)
     found = {}
     for name in names:
-        taken = USUAL[name]
-        found[name] = np.array([taken.value(history, number) for number in range(result.sizes[taken.place])], float)
+        place, *_, value = USUAL[name]
+        assert value
+        found[name] = np.array([value(history, number) for number in range(result.sizes[place])], float)
     return found
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from movingfrf._basics.checks import nearest
-from movingfrf._basics.toml_file import tables_of, text_of
+from movingfrf._basics.toml_file import as_toml, tables_of, text_of
 from movingfrf.scenarios.kinds import DRIVE, PASSAGE
 from movingfrf.scenarios.reading import Known, scenario_of
 from movingfrf.scenarios.scenario import Scenario
@@ -195,4 +195,6 @@ class Variants:
             names = path.split(".")
             there = section_in(names[0], value, self.folder) if len(names) == 1 else value
             tables = changed(tables, names, there)
-        return scenario_of(tables, name=self.name, source=self.name, folder=self.folder, known=self._known)
+        return scenario_of(
+            tables, name=self.name, source=self.name, folder=self.folder, text=as_toml(tables), known=self._known
+        )

@@ -10,7 +10,7 @@ from typing import Any
 
 from movingfrf._basics.checks import Finding, checking
 from movingfrf._basics.version import VERSION
-from movingfrf.metrics.measures import USUAL
+from movingfrf.metrics.measures import STATISTICS, USUAL, Usual
 from movingfrf.scenarios.kinds import ROUGHNESS
 from movingfrf.scenarios.scenario import Drive, Scenario
 from movingfrf.scenarios.variants import Variants, section_in, tables_in
@@ -33,6 +33,8 @@ class Plan:
         What varies.
     measures : tuple of str
         What is asked of each case.
+    response : str
+        How each case is solved: `simulate` or `random`.
     """
 
     tables: dict[str, Any]
@@ -40,6 +42,7 @@ class Plan:
     name: str
     axes: Axes
     measures: tuple[str, ...]
+    response: str = "simulate"
 
     @property
     def told(self) -> dict[str, Any]:
@@ -53,6 +56,7 @@ class Plan:
                 {"paths": list(axis.paths), "values": [list(each) for each in axis.values]} for axis in self.axes
             ],
             "measures": list(self.measures),
+            "response": self.response,
         }
 
     @property
@@ -71,6 +75,7 @@ class Plan:
             name=told["name"],
             axes=axes_of(axes),
             measures=tuple(told["measures"]),
+            response=told["response"],
         )
 
     @property
@@ -81,7 +86,7 @@ class Plan:
         realised = kind is not None and any(key.name == "seed" for key in kind.keys)
         ways = [f"run.{key}" for key in ("speed", "speed_kmh", "duration", "start")]
         varied = [path for path in self.axes.paths if path in ways]
-        if not (realised and varied):
+        if not (realised and varied) or self.response == "random":
             return []
         return [
             Finding(
@@ -93,9 +98,19 @@ class Plan:
         ]
 
     @property
+    def known(self) -> dict[str, Usual]:
+        """What can be asked of each case."""
+        return known_measures(self.response)
+
+    @property
     def variants(self) -> Variants:
         """Its scenarios."""
         return Variants(self.tables, self.folder, self.name)
+
+
+def known_measures(response: str) -> dict[str, Usual]:
+    """Say what can be asked of a case that is solved so."""
+    return STATISTICS if response == "random" else USUAL
 
 
 def plan_of(
@@ -103,6 +118,7 @@ def plan_of(
     axes: Mapping[Any, Any],
     *,
     measures: Sequence[str] | None = None,
+    response: str = "simulate",
     time_step: float | None = None,
 ) -> Plan:
     """Check what is asked for before anything is computed.
@@ -115,6 +131,8 @@ def plan_of(
         As `sweep` takes them.
     measures : sequence of str, optional
         Names of measures; None: all.
+    response : str
+        `simulate` or `random`.
     time_step : float, optional
         Step in place of the scenario's [s].
 
@@ -129,10 +147,12 @@ def plan_of(
         If a measure is unknown, an axis is none or none of its values suits the scenario, or that has no vehicle.
     """
     with checking() as check:
-        names = USUAL if measures is None else [measures] if isinstance(measures, str) else measures
-        asked = [check.choice("measures", name, USUAL) for name in names]
+        response = check.choice("response", response, ("simulate", "random"))
+        known = known_measures(response)
+        names = known if measures is None else [measures] if isinstance(measures, str) else measures
+        asked = [check.choice("measures", name, known) for name in names]
         if not asked:
-            check.refuse("measures", f"must be some of {', '.join(USUAL)}, got none")
+            check.refuse("measures", f"must be some of {', '.join(known)}, got none")
         if time_step is not None:
             time_step = check.positive("time_step", time_step, "s")
     spanned = axes_of(axes)
@@ -142,7 +162,7 @@ def plan_of(
     # Files that stand for tables are read once, here: what they hold is part of the plan.
     read = {axis.paths: [_read(axis.at(place), folder) for place in range(axis.size)] for axis in spanned}
     measured = tuple(dict.fromkeys(asked))
-    found = Plan(tables=tables, folder=folder, name=name, axes=axes_of(read), measures=measured)
+    found = Plan(tables=tables, folder=folder, name=name, axes=axes_of(read), measures=measured, response=response)
     if not isinstance(_first(found).case, Drive):
         raise ValueError(f"{name}: prescribed loads are not swept; a vehicle and a road are needed")
     return found

@@ -13,7 +13,6 @@ import numpy as np
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.undoing import scratch
-from movingfrf.metrics.measures import USUAL
 from movingfrf.results.labels import attributes
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.studies.sweep.chunks import InFolder, InMemory, Kept, chunk_size
@@ -30,6 +29,7 @@ def sweep(
     axes: Mapping[Any, Any],
     *,
     measures: Sequence[str] | None = None,
+    response: str = "simulate",
     time_step: float | None = None,
     workers: int = 1,
     store: str | Path | None = None,
@@ -51,7 +51,10 @@ def sweep(
     measures : sequence of str, optional
         What is asked of each case: `static_load`, `contact_force_rms`, `contact_force_peak`,
         `smallest_contact_force`, `dynamic_load_coefficient`, `static_deflection`, `deflection_rms`,
-        `deflection_peak`, `acceleration_rms`, `acceleration_peak`, `weighted_acceleration_rms`; all by default.
+        `deflection_peak`, `acceleration_rms`, `acceleration_peak`, `weighted_acceleration_rms`; all by default. Of
+        random responses their statistics, as `random_response` calls them.
+    response : str
+        `simulate`, or `random`: the response to all roads of a spectrum, as `random_response` computes it.
     time_step : float, optional
         Step in time in place of the scenario's [s].
     workers : int
@@ -95,7 +98,7 @@ def sweep(
     """
     with checking() as check:
         workers = check.whole("workers", workers, least=1)
-    plan = plan_of(scenario, axes, measures=measures, time_step=time_step)
+    plan = plan_of(scenario, axes, measures=measures, response=response, time_step=time_step)
     with ExitStack() as stack:
         folder = None if store is None else Path(store)
         if folder is None and workers > 1:
@@ -189,7 +192,7 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
     for axis, dimension in zip(axes, dims, strict=True):
         for path in axis.paths:
             coordinates[names[path]] = (dimension, _coordinate(axis.along(path)), {"long_name": path})
-    places = {USUAL[name].place for name in plan.measures}
+    places = {plan.known[name].place for name in plan.measures}
     widths = {}
     for label, place, part in (
         ("contact_name", "contact", "contacts"),
@@ -202,7 +205,7 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
             coordinates[place] = (place, np.arange(widths[place]), {"long_name": f"number of the {place}"})
             coordinates[label] = _named(words, widths[place], place, dims, laid)
     for name in plan.measures:
-        usual = USUAL[name]
+        usual = plan.known[name]
         values = [value for chunk in chunks for value in chunk.values[name]]
         made = laid(values, np.full((cases, widths[usual.place]), np.nan))
         variables[name] = ((*dims, usual.place), made, {"units": usual.units, "long_name": usual.words})

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from movingfrf._basics.toml_file import tables_of
+
 
 def axes_in(lines: Iterable[str]) -> dict[Any, list[Any]]:
     """Understand axes.
@@ -94,6 +96,33 @@ def _value(text: str) -> Any:
         return _number(text)
     except ValueError:
         return text
+
+
+def values_in(lines: Iterable[str]) -> dict[str, Any]:
+    """Understand single values of keys, as `run.speed=22`; lists and tables as TOML writes them.
+
+    Raises
+    ------
+    ValueError
+        If a line is none.
+
+    Examples
+    --------
+    >>> values_in(["run.speed=22", "vehicle.axles=[2.0, -2.0]", "roughness.road_class=C"])
+    {'run.speed': 22, 'vehicle.axles': [2.0, -2.0], 'roughness.road_class': 'C'}
+    """
+    found: dict[str, Any] = {}
+    for line in lines:
+        key, equals, value = (part.strip() for part in line.partition("="))
+        if not (key and equals and value):
+            raise ValueError(f"--set {line} must be KEY=VALUE, as run.speed=22")
+        if key in found:
+            raise ValueError(f"--set {line}: {key} is set twice")
+        try:
+            found[key] = tables_of(f"value = {value}")["value"]
+        except ValueError:
+            found[key] = value
+    return found
 
 
 def part_in(text: str) -> tuple[int, int]:
