@@ -25,6 +25,7 @@ from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.template import template
 from movingfrf.studies.sweep import chunks
 from movingfrf.studies.sweep.files import as_csv
+from movingfrf.studies.sweep.page import findings, render, tables
 from movingfrf.studies.sweep.words import axes_in, part_in
 
 pytestmark = pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
@@ -383,3 +384,26 @@ def test_random_responses(truck):
     done = command("sweep", truck, "--random", "--over", "run.speed=9,12", "-o", truck.parent / "at_random")
     assert done.returncode == 0, done.stderr
     assert "contact_force_rms front [N]" in (truck.parent / "at_random" / "table.csv").read_text()
+
+
+def test_the_page_says_what_the_table_has(truck):
+    """A figure for each question, where it is worst, which cases have none; equal tables, equal pages."""
+    axes = {"run.speed": [9.0, 12.0, 45.0], "roughness": [FILE], "vehicle": ["half_truck", "golden_car", "none"]}
+    table = mf.sweep(truck, axes)
+    page = render(table, "trucks", "text of the scenario")
+    assert page == render(table, "trucks", "text of the scenario")
+    assert page.count("<figure") == 5
+    said = " ".join(findings(table))
+    assert "2 cases without an answer: the profile must cover" in said or "must cover the journey" in said
+    assert "must be one of" in said
+    (worst,) = tables(table)
+    coefficient = next(row for row in worst.rows if "coefficient" in row.name)
+    at = table.dynamic_load_coefficient.max("contact")
+    assert float(coefficient.cells[2]) == pytest.approx(float(at.max()), rel=1e-3)
+    speed = float(at.max(["roughness", "vehicle"]).idxmax("speed"))
+    assert f"speed {speed:g}" in coefficient.cells[4]
+    none = mf.sweep(truck, {"run.speed": [45.0, 10.0], "roughness": [FILE]}).isel(speed=[0])
+    assert "1 of them have no answer" in render(none, "none", "")
+    for few in ({"roughness.seed": range(3)}, {"vehicle": ["half_truck", "golden_car"]}, {"run.speed": [9.0]}):
+        assert "<figure" in render(mf.sweep(truck, few, measures=["motion_rms"], response="random"), "few", "")
+        assert "<figure" in render(mf.sweep(truck, few), "few", "")

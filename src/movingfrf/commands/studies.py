@@ -130,8 +130,8 @@ def sweep(
 ) -> None:
     """Solve many cases of a scenario, and measure each.
 
-    Writes sweep.nc (netCDF) and table.csv, one line a case, into the folder; in its folder chunks lie cases that
-    are solved. Called again, it solves what is missing.
+    Writes report.html, sweep.nc (netCDF) and table.csv, one line a case, into the folder; in its folder chunks lie
+    cases that are solved. Called again, it solves what is missing.
 
     Parameters
     ----------
@@ -161,7 +161,9 @@ def sweep(
         stages.report("loading", 0.0)
         from movingfrf._basics.netcdf_file import as_netcdf
         from movingfrf._basics.output import replacing
+        from movingfrf._basics.toml_file import as_toml
         from movingfrf.studies.sweep.files import as_csv
+        from movingfrf.studies.sweep.page import findings, render, tables
         from movingfrf.studies.sweep.plan import plan_of
         from movingfrf.studies.sweep.sweep import gathered, swept
         from movingfrf.studies.sweep.words import axes_in, part_in
@@ -181,6 +183,8 @@ def sweep(
                 table = gathered(plan, kept)
             with replacing(folder) as files:
                 files |= {"sweep.nc": as_netcdf(table), "table.csv": as_csv(table)}
+                stages.report("report.html", 0.0)
+                files["report.html"] = render(table, f"{plan.name}: sweep", as_toml(plan.tables))
     if table is None:
         missing = len(kept.missing())
         console.print(f"part {part} is solved; {wording.count(missing, 'chunk')} of other parts not yet")
@@ -188,10 +192,7 @@ def sweep(
     cases = table.status.size
     without = int((table.status.values != "").sum())
     console.print(f"{wording.count(cases, 'case')}, {without or 'none'} without an answer")
-    if without:
-        reasons = sorted({str(why) for why in table.status.values.ravel() if why})
-        for why in reasons[:5]:
-            console.print(f"  {why}", soft_wrap=True)
-    print_findings(console, [finding.message for finding in plan.findings])
-    for name in ("sweep.nc", "table.csv"):
+    print_tables(console, tables(table))
+    print_findings(console, findings(table))
+    for name in ("report.html", "sweep.nc", "table.csv"):
         console.print(f"wrote {folder / name}", soft_wrap=True)
