@@ -123,6 +123,9 @@ def sweep(
     over: Annotated[list[str], Parameter(negative=())],
     measures: str | None = None,
     at_random: Annotated[bool, Parameter(name="--random", negative=())] = False,
+    samples: int | None = None,
+    design: str = "sobol",
+    seed: int = 0,
     time_step: float | None = None,
     part: str | None = None,
     workers: int = 1,
@@ -145,6 +148,12 @@ def sweep(
         Names with commas between them, as contact_force_rms,dynamic_load_coefficient; all by default.
     at_random
         The response to all roads of the spectrum in place of one of them, as movingfrf random computes it.
+    samples
+        So many samples in place of all combinations; each --over is a range then, as run.speed=10~30.
+    design
+        How they are drawn: sobol, latin_hypercube, random, or saltelli, which tells how much is due to which key.
+    seed
+        Of the samples.
     time_step
         Step in place of the scenario's, in seconds.
     part
@@ -162,16 +171,18 @@ def sweep(
         from movingfrf._basics.netcdf_file import as_netcdf
         from movingfrf._basics.output import replacing
         from movingfrf._basics.toml_file import as_toml
+        from movingfrf.studies.sweep.design import design as drawn
         from movingfrf.studies.sweep.files import as_csv
         from movingfrf.studies.sweep.page import findings, render, tables
         from movingfrf.studies.sweep.plan import plan_of
         from movingfrf.studies.sweep.sweep import gathered, swept
-        from movingfrf.studies.sweep.words import axes_in, part_in
+        from movingfrf.studies.sweep.words import axes_in, part_in, ranges_in
 
         which = (1, 1) if part is None else part_in(part)
         names = None if measures is None else [name.strip() for name in measures.split(",") if name.strip()]
         response = "random" if at_random else "simulate"
-        plan = plan_of(file, axes_in(over), measures=names, response=response, time_step=time_step)
+        axes = axes_in(over) if samples is None else drawn(ranges_in(over), samples=samples, kind=design, seed=seed)
+        plan = plan_of(file, axes, measures=names, response=response, time_step=time_step)
         folder = output if output is not None else file.parent / "out" / f"{plan.name}-sweep"
         kept = swept(plan, folder, part=which, workers=workers, progress=stages.report)
         table = None

@@ -12,6 +12,7 @@ import numpy as np
 
 from movingfrf._basics.checks import shown
 from movingfrf.scenarios.variants import plain
+from movingfrf.studies.sweep.design import Design
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,10 +25,13 @@ class Axis:
         Where each key stands in the scenario: `vehicle.tyre_stiffness.0`, or a whole table.
     values : tuple of tuple
         What each key is at each place along the axis.
+    name : str
+        What the axis is called; empty: as its first key.
     """
 
     paths: tuple[str, ...]
     values: tuple[tuple[Any, ...], ...]
+    name: str = ""
 
     @property
     def size(self) -> int:
@@ -77,7 +81,7 @@ class Axes(tuple[Axis, ...]):
     def dimensions(self) -> tuple[str, ...]:
         """What each axis is called: as its first key."""
         names = self.names
-        return tuple(names[axis.paths[0]] for axis in self)
+        return tuple(axis.name or names[axis.paths[0]] for axis in self)
 
     def _order(self) -> list[int]:
         """Numbers of the axes in the order in which cases are solved: what is dear changes least often."""
@@ -105,13 +109,13 @@ class Axes(tuple[Axis, ...]):
         }
 
 
-def axes_of(given: Mapping[Any, Any]) -> Axes:
+def axes_of(given: Mapping[Any, Any] | Design) -> Axes:
     """Understand axes.
 
     Parameters
     ----------
-    given : mapping of str, or tuple of str, to sequence
-        Values by the path of a key, or of keys that vary together.
+    given : mapping of str, or tuple of str, to sequence, or Design
+        Values by the path of a key, or of keys that vary together; or samples.
 
     Returns
     -------
@@ -130,6 +134,8 @@ def axes_of(given: Mapping[Any, Any]) -> Axes:
     >>> axes.shape, axes.dimensions
     ((2, 2), ('speed', 'vehicle.axles.0'))
     """
+    if isinstance(given, Design):
+        return Axes([Axis(paths=given.paths, values=tuple(map(tuple, given.values.tolist())), name="sample")])
     if not isinstance(given, Mapping):
         raise ValueError(f"axes must be a mapping from keys of the scenario to their values, got {shown(given)}")
     axes = Axes(_axis(key, values) for key, values in given.items())

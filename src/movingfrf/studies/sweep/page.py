@@ -17,6 +17,7 @@ from movingfrf.reports.curves import GREY, PALETTE
 from movingfrf.reports.figures import SIZE, blank, drawing, illustrated
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import SCALES, Column, Row, Setting, Table
+from movingfrf.studies.sweep.design import sensitivity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,7 +70,7 @@ def render(table: xr.Dataset, title: str, scenario: str) -> str:
         title=title,
         version=VERSION,
         summary=_summary(table),
-        settings=[_setting(table, str(dim)) for dim in table.status.dims],
+        settings=[_setting(table, str(name)) for name in table.coords if _varies(table, str(name))],
         findings=findings(table),
         no_findings="No findings: every case has an answer, within the assumptions that it is computed under.",
         tables=tables(table),
@@ -150,6 +151,8 @@ def _ways(table: xr.Dataset) -> tuple[str | None, str | None, list[str]]:
 
 def _figure(table: xr.Dataset, seen: Seen) -> Any:
     """Draw a measure along an axis: a curve for each value of another one, a band where others vary as well."""
+    if "design" in table.attrs:
+        return _sampled(table, seen)
     along, curves, others = _ways(table)
     figure = blank(SIZE.single + 0.4)
     (ax,) = figure.subplots(1, 1, squeeze=False)[0]
@@ -175,6 +178,18 @@ def _figure(table: xr.Dataset, seen: Seen) -> Any:
     unit = f" [{seen.units}]" if seen.units else ""
     ax.set(xlabel=_axis_name(table, along), ylabel=f"{seen.words.lower()}{unit}")
     legend_above(ax)
+    return figure
+
+
+def _sampled(table: xr.Dataset, seen: Seen) -> Any:
+    """Draw how often which value comes, and each sample over the first few keys."""
+    keys = [str(name) for name in table.coords if table[name].dims == ("sample",) and name != "sample"][:3]
+    figure = blank(SIZE.single + 0.4)
+    first, *others = figure.subplots(1, 1 + len(keys), squeeze=False)[0]
+    _draw_spread(first, seen.values, seen)
+    for ax, key in zip(others, keys, strict=True):
+        ax.plot(table[key].values, seen.values, ".", color=PALETTE[0], markersize=3.0)
+        ax.set(xlabel=_axis_name(table, key), ylabel=seen.units)
     return figure
 
 
@@ -219,7 +234,7 @@ def _axis_name(table: xr.Dataset, dim: str) -> str:
 
 def _caption(table: xr.Dataset, seen: Seen) -> str:
     """Say what is drawn, and where it is worst."""
-    along, curves, others = _ways(table)
+    along, curves, others = (None, None, list[str]()) if "design" in table.attrs else _ways(table)
     words = f"{seen.words}: of each case the contact with the {'smallest' if seen.smallest else 'largest'} value. "
     if table[seen.name].dims[-1] == "dof":
         words = f"{seen.words}: of each case the calmest of what moves up and down. "
@@ -243,6 +258,9 @@ def _extreme(table: xr.Dataset, seen: Seen) -> str:
     if not np.isfinite(seen.values).any():
         return ""
     at = int(np.nanargmin(seen.values) if seen.smallest else np.nanargmax(seen.values))
+    if "design" in table.attrs:
+        keys = [str(name) for name in table.coords if _varies(table, str(name))]
+        return ", ".join(f"{key} {number(float(table[key].values[at]))}" for key in keys)
     places = np.unravel_index(at, seen.values.shape)
     return ", ".join(
         f"{dim} {_value(table, str(dim), int(place))}" for dim, place in zip(table.status.dims, places, strict=True)
@@ -251,16 +269,27 @@ def _extreme(table: xr.Dataset, seen: Seen) -> str:
 
 def _summary(table: xr.Dataset) -> str:
     cases, without = table.status.size, int((table.status.values != "").sum())
+    if "design" in table.attrs:
+        drawn = json.loads(table.attrs["design"])
+        words = (
+            f"{count(cases, 'case')}, drawn ({drawn['kind'].replace('_', ' ')}) of {' and '.join(drawn['paths'])}."
+        )
+        return words + (f" {without} of them have no answer." if without else " Every one has an answer.")
     dims = [f"{table.sizes[dim]} of {str(dim).replace('_', ' ')}" for dim in table.status.dims]
     words = f"{count(cases, 'case')}: {' × '.join(dims)}."
     return words + (f" {without} of them have no answer." if without else " Every one has an answer.")
+
+
+def _varies(table: xr.Dataset, name: str) -> bool:
+    """Whether a coordinate is one of keys."""
+    return name != "sample" and bool(table[name].dims) and set(table[name].dims) <= set(table.status.dims)
 
 
 def _setting(table: xr.Dataset, dim: str) -> Setting:
     """Say over what an axis goes."""
     values = table[dim].values
     if values.dtype.kind in "iuf" and values.size > 4:
-        said = f"{plain(float(values.min()))} to {plain(float(values.max()))}"
+        said = f"{number(float(values.min()))} to {number(float(values.max()))}"
     else:
         said = ", ".join(_value(table, dim, number_) for number_ in range(min(values.size, 6)))
         said += ", …" if values.size > 6 else ""
@@ -322,4 +351,31 @@ def tables(table: xr.Dataset) -> list[Table]:
         Column("unit", "", words=True),
         Column("worst at", "", words=True),
     ]
-    return [Table("Measures over all cases, and where each is worst.", "measure", columns, rows)] if rows else []
+    found = [Table("Measures over all cases, and where each is worst.", "measure", columns, rows)] if rows else []
+    return [*found, *_indices(table)]
+
+
+def _indices(table: xr.Dataset) -> list[Table]:
+    """Say how much of each measure's variance is due to which key, where the design tells."""
+    drawn = json.loads(table.attrs.get("design", "{}"))
+    if drawn.get("kind") != "saltelli" or (table.status.values != "").any():
+        return []
+    rows = []
+    for _, seen in _seen(table):
+        found = sensitivity(table, seen.name)
+        # Of the contact or degree of freedom that varies most.
+        place = int(np.nanargmax(np.nan_to_num(table[seen.name].values.std(axis=0), nan=-1.0)))
+        cells = [
+            f"{number(float(first), 2)}; {number(float(total), 2)}"
+            for first, total in zip(found.first_order.values[:, place], found.total.values[:, place], strict=True)
+        ]
+        rows.append(Row(seen.words, cells))
+    return [
+        Table(
+            "Share of the variance that is due to a key alone; to it and others with it. Of the contact or degree "
+            "of freedom that varies most.",
+            "measure",
+            [Column(str(key), "", words=True) for key in drawn["paths"]],
+            rows,
+        )
+    ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from movingfrf.scenarios.kinds import ROUGHNESS
 from movingfrf.scenarios.scenario import Drive, Scenario
 from movingfrf.scenarios.variants import Variants, section_in, tables_in
 from movingfrf.studies.sweep.axes import Axes, axes_of
+from movingfrf.studies.sweep.design import Design
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +36,8 @@ class Plan:
         What is asked of each case.
     response : str
         How each case is solved: `simulate` or `random`.
+    design : dict
+        How samples were drawn, where the axis is one of samples.
     """
 
     tables: dict[str, Any]
@@ -43,6 +46,7 @@ class Plan:
     axes: Axes
     measures: tuple[str, ...]
     response: str = "simulate"
+    design: dict[str, Any] = field(default_factory=dict)
 
     @property
     def told(self) -> dict[str, Any]:
@@ -57,6 +61,7 @@ class Plan:
             ],
             "measures": list(self.measures),
             "response": self.response,
+            "design": self.design,
         }
 
     @property
@@ -69,13 +74,15 @@ class Plan:
         """Read what `text` says."""
         told = json.loads(text)
         axes = {tuple(axis["paths"]): axis["values"] for axis in told["axes"]}
+        drawn = told["design"]
         return cls(
             tables=told["scenario"],
             folder=Path(told["folder"]),
             name=told["name"],
-            axes=axes_of(axes),
+            axes=named(axes_of(axes), drawn),
             measures=tuple(told["measures"]),
             response=told["response"],
+            design=drawn,
         )
 
     @property
@@ -115,7 +122,7 @@ def known_measures(response: str) -> dict[str, Usual]:
 
 def plan_of(
     scenario: Scenario | str | Path | Mapping[str, Any],
-    axes: Mapping[Any, Any],
+    axes: Mapping[Any, Any] | Design,
     *,
     measures: Sequence[str] | None = None,
     response: str = "simulate",
@@ -127,7 +134,7 @@ def plan_of(
     ----------
     scenario : Scenario, str, Path or mapping
         A scenario, a file, or its tables.
-    axes : mapping
+    axes : mapping or Design
         As `sweep` takes them.
     measures : sequence of str, optional
         Names of measures; None: all.
@@ -162,10 +169,24 @@ def plan_of(
     # Files that stand for tables are read once, here: what they hold is part of the plan.
     read = {axis.paths: [_read(axis.at(place), folder) for place in range(axis.size)] for axis in spanned}
     measured = tuple(dict.fromkeys(asked))
-    found = Plan(tables=tables, folder=folder, name=name, axes=axes_of(read), measures=measured, response=response)
+    drawn = axes.drawn if isinstance(axes, Design) else {}
+    found = Plan(
+        tables=tables,
+        folder=folder,
+        name=name,
+        axes=named(axes_of(read), drawn),
+        measures=measured,
+        response=response,
+        design=drawn,
+    )
     if not isinstance(_first(found).case, Drive):
         raise ValueError(f"{name}: prescribed loads are not swept; a vehicle and a road are needed")
     return found
+
+
+def named(axes: Axes, drawn: Mapping[str, Any]) -> Axes:
+    """Call the axis of a design as samples are called."""
+    return Axes(replace(axis, name="sample") for axis in axes) if drawn else axes
 
 
 def _read(values: Mapping[str, Any], folder: Path) -> list[Any]:

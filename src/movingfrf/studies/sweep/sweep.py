@@ -16,6 +16,7 @@ from movingfrf._basics.undoing import scratch
 from movingfrf.results.labels import attributes
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.studies.sweep.chunks import InFolder, InMemory, Kept, chunk_size
+from movingfrf.studies.sweep.design import Design
 from movingfrf.studies.sweep.plan import Plan, plan_of
 from movingfrf.studies.sweep.solving import solved
 from movingfrf.studies.sweep.workers import carried_on
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 def sweep(
     scenario: Scenario | str | Path | Mapping[str, Any],
-    axes: Mapping[Any, Any],
+    axes: Mapping[Any, Any] | Design,
     *,
     measures: Sequence[str] | None = None,
     response: str = "simulate",
@@ -44,10 +45,10 @@ def sweep(
     ----------
     scenario : Scenario, str, Path or mapping
         A vehicle on a rough road: a scenario, a file, or its tables as a dict.
-    axes : mapping of str, or tuple of str, to sequence
-        What varies: values by the dotted path of a key, `run.speed` or `vehicle.tyre_stiffness.0`, numbers in lists
-        from zero; keys in a tuple vary together, each value being a tuple as long. A whole table (`vehicle`) takes
-        tables, files or, for a vehicle, names of the catalogue.
+    axes : mapping of str, or tuple of str, to sequence, or Design
+        What `design` returned, or what varies: values by the dotted path of a key, `run.speed` or
+        `vehicle.tyre_stiffness.0`, numbers in lists from zero; keys in a tuple vary together, each value being a
+        tuple as long. A whole table (`vehicle`) takes tables, files or, for a vehicle, names of the catalogue.
     measures : sequence of str, optional
         What is asked of each case: `static_load`, `contact_force_rms`, `contact_force_peak`,
         `smallest_contact_force`, `dynamic_load_coefficient`, `static_deflection`, `deflection_rms`,
@@ -190,6 +191,8 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
     variables: dict[str, Any] = {}
     coordinates: dict[str, Any] = {}
     for axis, dimension in zip(axes, dims, strict=True):
+        if axis.name:
+            coordinates[dimension] = (dimension, np.arange(axis.size), {"long_name": f"number of the {dimension}"})
         for path in axis.paths:
             coordinates[names[path]] = (dimension, _coordinate(axis.along(path)), {"long_name": path})
     places = {plan.known[name].place for name in plan.measures}
@@ -217,6 +220,7 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
         scenario=json.dumps(plan.tables),
         axes=json.dumps(plan.told["axes"]),
         findings=plan.findings,
+        **({"design": json.dumps(plan.design)} if plan.design else {}),
     )
     return xr.Dataset(variables, coordinates, settings)
 

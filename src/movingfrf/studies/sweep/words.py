@@ -41,6 +41,8 @@ def axes_in(lines: Iterable[str]) -> dict[Any, list[Any]]:
     axes: dict[Any, list[Any]] = {}
     for line in lines:
         key, equals, values = line.partition("=")
+        if "~" in values:
+            raise ValueError(f"--over {line} is a range: --samples says how many are drawn from it")
         keys = tuple(each.strip() for each in key.split(","))
         if not equals or not all(keys) or not values.strip():
             raise _refused(line)
@@ -96,6 +98,35 @@ def _value(text: str) -> Any:
         return _number(text)
     except ValueError:
         return text
+
+
+def ranges_in(lines: Iterable[str]) -> dict[str, tuple[float, float]]:
+    """Understand ranges of a design, as `run.speed=10~30`.
+
+    Raises
+    ------
+    ValueError
+        If a line is none.
+
+    Examples
+    --------
+    >>> ranges_in(["run.speed=10~30"])
+    {'run.speed': (10.0, 30.0)}
+    """
+    found: dict[str, tuple[float, float]] = {}
+    for line in lines:
+        key, _, values = (part.strip() for part in line.partition("="))
+        low, tilde, high = values.partition("~")
+        try:
+            if not (key and tilde):
+                raise ValueError
+            ends = float(low), float(high)
+        except ValueError:
+            raise ValueError(f"--over {line} must be KEY=LOW~HIGH for a design, as run.speed=10~30") from None
+        if key in found:
+            raise ValueError(f"--over {line}: {key} varies twice")
+        found[key] = ends
+    return found
 
 
 def values_in(lines: Iterable[str]) -> dict[str, Any]:
