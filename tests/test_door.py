@@ -262,11 +262,13 @@ CALLS = {
 OTHERS = {
     "Axle",
     "Body",
+    "Design",
     "Hinge",
     "Suspension",
     "Unit",
     "accelerance",
     "compare",
+    "design",
     "read_profile",
     "struck_plate",
     "sweep",

@@ -29,7 +29,7 @@ class Design(Value):
     paths : tuple of str
         Where each key stands in the scenario.
     values : ndarray, shape (sample, key)
-        What each is.
+        What each is [in the key's own unit].
     kind : str
         How they were drawn.
     base : int
@@ -63,7 +63,8 @@ def design(over: Mapping[str, Any], *, samples: int, kind: str = "sobol", seed: 
     Parameters
     ----------
     over : mapping of str to tuple of float, or distribution
-        By the path of each key between what it lies, all values alike; or a distribution of `scipy.stats`.
+        By the path of each key between what it lies [in its own unit], all values alike; or a distribution of
+        `scipy.stats`.
     samples : int
         How many; a power of two for `sobol` and `saltelli`, whose evenness rests on it.
     kind : str
