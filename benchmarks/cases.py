@@ -7,6 +7,10 @@ are used, so that other checkouts can be timed on the same cases (`benchmarks.ag
 
 from __future__ import annotations
 
+import atexit
+import shutil
+import tempfile
+import tomllib
 from collections.abc import Callable
 from copy import copy
 from dataclasses import replace
@@ -164,6 +168,15 @@ def loads() -> Run:
     return partial(mf.moving_loads, SCENARIO.guideway, forces, [0.0, -3.0, -6.0], speed=20.0, observe=points)
 
 
+def many(key: str, low: float, high: float) -> Run:
+    """Prepare twenty cases of the reference scenario on a profile from a file, all measures of each."""
+    folder = Path(tempfile.mkdtemp(prefix="movingfrf-bench-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    mf.write_profile(mf.realise(ROAD.spectrum, length=320.0, start=-2.5), folder / "road.csv")
+    tables = tomllib.loads(SCENARIO.text) | {"roughness": {"kind": "profile", "file": str(folder / "road.csv")}}
+    return partial(mf.sweep, tables, {key: np.linspace(low, high, 20)})
+
+
 CASES: dict[str, Callable[[], Run]] = {
     "reference": drive,
     "reference_5_ms": partial(drive, time_step=5e-3),
@@ -177,6 +190,8 @@ CASES: dict[str, Callable[[], Run]] = {
     "random_response": random,
     "transfer": transfer,
     "moving_loads": loads,
+    "sweep_speeds": partial(many, "run.speed", 8.0, 12.0),
+    "sweep_tyres": partial(many, "vehicle.tyre_stiffness.0", 3.0e6, 4.0e6),
     "train": partial(by_train, 80.0),
     "train_10_km": partial(by_train, 10_000.0),
     "hour": hour,

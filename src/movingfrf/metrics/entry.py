@@ -106,14 +106,23 @@ class History:
             self._felt[dof] = felt(self.weighted(dof), self.step, weighting)
         return self._felt[dof]
 
+    @cached_property
+    def _arrays(self) -> dict[str, FloatArray]:
+        return {}
+
+    def _array(self, variable: str) -> FloatArray:
+        """Take a variable without its labels, once."""
+        if variable not in self._arrays:
+            self._arrays[variable] = self.result[variable].values
+        return self._arrays[variable]
+
     def value(self, variable: str, number: int) -> float:
         """Value of a variable at a contact or a degree of freedom."""
-        return float(self.result[variable].values[number])
+        return float(self._array(variable)[number])
 
     def column(self, variable: str, number: int) -> FloatArray:
         """History of a variable at a contact or a degree of freedom."""
-        values: FloatArray = self.result[variable].values[:, number]
-        return values
+        return self._array(variable)[:, number]
 
     def place(self, kind: str, number: int) -> Place:
         """Name a contact, a path or a degree of freedom."""

@@ -102,6 +102,8 @@ class Kind:
         What it is, in a sentence.
     either : tuple of str
         Keys of which one is needed, and only one.
+    stays : bool
+        Whether its keys alone say what it is, whatever else it is given: the way of the journey, of a road.
     """
 
     name: str
@@ -109,6 +111,7 @@ class Kind:
     keys: tuple[Key, ...]
     words: str = ""
     either: tuple[str, ...] = ()
+    stays: bool = False
 
     @classmethod
     def of(cls, target: Callable[..., Any], *, name: str | None = None, without: Sequence[str] = ()) -> Kind:

@@ -55,6 +55,7 @@ PROFILE = Kind(
         {key.name: key for key in (*keys_of(read_profile), *keys_of(prepared, without=["profile"]))}.values()
     ),
     words="A measured profile, read from a file.",
+    stays=True,
 )
 
 BEAM = family("beam", Beam, EulerBernoulliBeam, TimoshenkoBeam, TensionedBeam)

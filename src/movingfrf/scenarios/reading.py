@@ -268,7 +268,9 @@ class _Builder:
 
         if self.known is None:
             return make()
-        return self.known.taken(key, (repr(tables[key]), *given.values()), make)
+        kind = tables[key].get("kind") if isinstance(tables[key], dict) else None
+        stays = isinstance(kind, str) and kind in family.kinds and family.kinds[kind].stays
+        return self.known.taken(key, (repr(tables[key]), *([] if stays else given.values())), make)
 
     def _built(self, table: Any, family: Family, path: str, **given: Any) -> Any:
         """Build one table, or return None and leave the reasons in `faults`.
