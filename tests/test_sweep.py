@@ -229,7 +229,7 @@ REFUSED = {
     "must be a positive number": {"run.speed": ["fast"]},
     "of one kind, got a number and a text": {"run.speed": [9.0, "fast"]},
     "must be positive": {"run.speed": [-1.0, -2.0]},
-    "finite values, got nan": {"run.speed": [np.nan]},
+    "must have numbers, got nan": {"run.speed": [np.nan]},
     "a list of values, got 9.0": {"run.speed": 9.0},
     "a value at least, got none": {"run.speed": []},
     "varies twice": {"run.speed": [9.0], ("run.speed", "run.start"): [(9.0, 0.0)]},
@@ -245,6 +245,26 @@ def test_an_impossible_axis_is_refused_before_anything_is_computed(words, truck,
     monkeypatch.setattr("movingfrf.studies.sweep.sweep.solved", lambda *_: pytest.fail("computed"))
     with pytest.raises(ValueError, match=re.escape(words)):
         mf.sweep(truck, REFUSED[words])
+
+
+def test_wheels_that_follow_the_rail_and_wheels_on_springs(tmp_path):
+    """A stiffness may be inf, in the scenario and along an axis; what is kept knows it."""
+    tables = {
+        "guideway": {
+            "kind": "track",
+            "beam": {"kind": "euler_bernoulli_beam", "bending_stiffness": 6.42e6, "mass": 60.2},
+            "foundation": {"kind": "spring", "stiffness": 5e7, "damping": 5e4},
+        },
+        "vehicle": {"kind": "wheelset", "mass": 900.0, "contact_stiffness": float("inf")},
+        "roughness": {"kind": "harmonic", "amplitude": 1e-4, "wavelength": 2.0},
+        "run": {"speed": 20.0, "duration": 0.5},
+    }
+    axes = {"vehicle.contact_stiffness": [1e9, float("inf")]}
+    table = mf.sweep(tables, axes, store=tmp_path / "kept")
+    assert (table.status == "").all()
+    assert mf.sweep(tables, axes, store=tmp_path / "kept").identical(table)
+    assert mf.sweep(tables, axes, workers=2).identical(table)
+    assert table.contact_force_rms.values[0, 0] == pytest.approx(table.contact_force_rms.values[1, 0], rel=0.3)
 
 
 def test_what_else_is_refused(truck):
@@ -505,3 +525,39 @@ def test_the_command_draws_samples(truck):
         refused = command("sweep", truck, "--over", line, *more, "-o", truck.parent / "none")
         assert refused.returncode == 2
         assert "run.speed" in refused.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_a_worker_that_is_killed(truck, tmp_path):
+    """One line, and what is solved stays: the same call goes on."""
+    over = [
+        "--over",
+        "run.speed=8:12:200",
+        "--over",
+        "roughness.seed=0,1",
+        "-o",
+        str(tmp_path / "kept"),
+        "--workers",
+        "2",
+    ]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "movingfrf", "sweep", str(truck), *over],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    if not children.exists():
+        process.kill()
+        pytest.skip("needs /proc")
+    while process.poll() is None and not (workers := children.read_text().split()):
+        time.sleep(0.01)
+    os.kill(int(workers[0]), signal.SIGKILL)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert "a worker has ended before its cases were solved: it was killed" in said.replace("\n", " ")
+    assert "Traceback" not in said
+    assert not any(Path(f"/proc/{worker}").exists() for worker in workers)
+    done = command("sweep", truck, *over)
+    assert done.returncode == 0, done.stderr
+    assert "400 cases, none without an answer" in done.stdout

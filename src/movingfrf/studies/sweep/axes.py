@@ -188,6 +188,5 @@ def _require_alike(path: str, values: Sequence[Any]) -> None:
         raise ValueError(f"{path} must have values of one kind, got {' and '.join(kinds)}")
     if "something else" in kinds:
         raise ValueError(f"{path} must have numbers, texts or tables as values, got {shown(values[0])}")
-    bad = next((value for value in values if isinstance(value, Real) and not math.isfinite(value)), None)
-    if bad is not None:
-        raise ValueError(f"{path} must have finite values, got {bad}")
+    if any(isinstance(value, Real) and math.isnan(value) for value in values):
+        raise ValueError(f"{path} must have numbers, got nan")

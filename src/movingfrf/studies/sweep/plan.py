@@ -67,7 +67,7 @@ class Plan:
     @property
     def text(self) -> str:
         """The same as JSON."""
-        return json.dumps(self.told, indent=1, allow_nan=False) + "\n"
+        return json.dumps(self.told, indent=1) + "\n"
 
     @classmethod
     def of_text(cls, text: str) -> Plan:

@@ -77,7 +77,7 @@ def sweep(
         If an axis names nothing or none of its values suits the scenario, a measure is unknown, or the folder holds
         another sweep.
     OSError
-        If the folder cannot be written.
+        If the folder cannot be written, or a worker ends before its time.
 
     Warns
     -----

@@ -32,7 +32,7 @@ def carried_on(folder: Path, kept: Kept, chunks: Sequence[int], workers: int, pr
 
     Raises
     ------
-    RuntimeError
+    ChildProcessError
         If a process ends before it has solved what it was to solve, with what it said.
     """
     one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
@@ -69,4 +69,8 @@ def _require_well(running: Sequence[subprocess.Popen[str]]) -> None:
     for process in running:
         if process.returncode:
             said = process.stderr.read().strip().splitlines() if process.stderr else []
-            raise RuntimeError(f"a worker has ended with {process.returncode}: {said[-1] if said else 'no word'}")
+            killed = "it was killed" if process.returncode < 0 else f"its exit status was {process.returncode}"
+            raise ChildProcessError(
+                f"a worker has ended before its cases were solved: {said[-1] if said else killed}; what is solved "
+                "is kept where there is a folder for it, and called again the sweep goes on from there"
+            )
