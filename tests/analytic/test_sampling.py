@@ -399,3 +399,29 @@ def test_coarse_steps_give_what_fine_ones_give():
         exact = mf.simulate(PAVEMENT, car, road, solved_step=1e-3, **travel)
         for name in ("contact_force", "acceleration"):
             assert largest(found[name].values, exact[name].values) < 1e-4, (name, per_wave)
+
+
+def drive_too_coarse():
+    surface = mf.harmonic(amplitude=1e-5, wavelength=0.5, length=60.0, start=-20.0)
+    return mf.simulate(TRACK, HERTZ, surface, speed=20.0, duration=1.0, time_step=0.02)
+
+
+def loads_too_coarse():
+    force = 1e4 * np.sin(2 * np.pi * 3.0 * 0.02 * np.arange(100))[:, None]
+    force[::2] *= -1.0
+    return mf.moving_loads(TRACK, force, [0.0], speed=20.0, time_step=0.02)
+
+
+@pytest.mark.parametrize(
+    ("module", "solve"), [("simulation", drive_too_coarse), ("moving_loads", loads_too_coarse)]
+)
+def test_a_response_that_memory_does_not_hold_is_not_kept(module, solve, monkeypatch):
+    """Then the record is all there is, and the result says so: nothing runs out of memory for what is beside it."""
+    with pytest.warns(mf.ValidityWarning, match=r"lies above 25 Hz.* is kept beside it"):
+        whole = solve()
+    assert "solved_deflection" in whole
+    monkeypatch.setattr(f"movingfrf.response.{module}.holds", lambda *_: False)
+    with pytest.warns(mf.ValidityWarning, match=r"lies above 25 Hz.* memory does not hold the response"):
+        alone = solve()
+    assert not [name for name in alone.variables if str(name).startswith("solved_")]
+    np.testing.assert_array_equal(alone.deflection, whole.deflection)

@@ -547,6 +547,15 @@ class Pulse(NamedTuple):
         return inverse * (constant + inverse * (linear + 2.0 * inverse * square))
 
 
+def holds(line: Line, channels: int, finer: int) -> bool:
+    """Tell whether memory holds records of so many channels with so many values for each step."""
+    try:
+        require_record(replace(line, samples=line.samples * finer, time_step=line.time_step / finer), channels)
+    except ValueError:
+        return False
+    return True
+
+
 def require_record(line: Line, channels: int) -> None:
     """Refuse a record that memory would not hold.
 

@@ -16,7 +16,7 @@ from movingfrf._basics.spline import cubic
 from movingfrf.guideways.guideway import Guideway, findings_of, require_guideway, told
 from movingfrf.response.accuracy import hidden
 from movingfrf.response.batches import unthreaded
-from movingfrf.response.line import TRANSFORM, Given, Line, require_record, together
+from movingfrf.response.line import TRANSFORM, Given, Line, holds, require_record, together
 from movingfrf.response.sampling import SAMPLING, Driving, Excited, excited
 from movingfrf.response.solve import solve
 from movingfrf.response.system import Prescribed
@@ -180,7 +180,9 @@ def carried(
         deflection, yielding = deflection - left_out, yielding * kept
     critical_speed = float(guideway.critical_speed)
     above = hidden(line, together(yielding)[None], deflection[None], least=1.0).max(initial=0.0, keepdims=True)
-    not_shown = find.not_shown(above, ["deflection"], time_step)
+    finer = int(np.ceil(time_step / driven_by.step)) if above.any() else 1
+    fits = finer == 1 or holds(line, system.ports, finer)
+    not_shown = find.not_shown(above, ["deflection"], time_step, kept=fits)
     found = [
         *find.near_critical(abs(speed), critical_speed),
         *findings_of(guideway),
@@ -197,9 +199,8 @@ def carried(
         "force": forces.sampled,
         "deflection": turned(deflection),
     }
-    if not_shown:
+    if not_shown and fits:
         # What is measured is taken from the response in the steps in which it was solved.
-        finer = int(np.ceil(time_step / driven_by.step))
         times = time_step / finer * np.arange(samples * finer)
         values |= {
             "solved_time": times,

@@ -15,7 +15,7 @@ from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.accuracy import hidden, past_the_end, truncated, unresolved
 from movingfrf.response.batches import unthreaded
 from movingfrf.response.influence import looked_at
-from movingfrf.response.line import Given, Line, require_record
+from movingfrf.response.line import Given, Line, holds, require_record
 from movingfrf.response.sampling import SAMPLING, Driving, Excited, at_first, excited
 from movingfrf.response.solve import solve
 from movingfrf.response.survey import SteadyState, survey
@@ -169,21 +169,24 @@ def driven(
     cut = truncated(system, driven_by, response, histories)
     elevation = excitation.elevation(journey.travelled)
     steady, wheels = surveyed.steady, range(len(vehicle.contacts))
-    above = (
+    above = np.append(
         hidden(driven_by.line, response.force, histories.force.values),
         hidden(driven_by.line, response.motion, histories.acceleration.values, derivative=2),
     )
+    finer = driven_by.finer(journey.time_step) if above.any() else 1
+    kept = finer == 1 or holds(driven_by.line, above.size, finer)
     not_shown = find.not_shown(
-        np.concatenate(above),
+        above,
         [
             *(f"force of {vehicle.standing.listed([n])}" for n in wheels),
             *(f"acceleration of {name}" for name in vehicle.dof_names),
         ],
         journey.time_step,
+        kept=kept,
     )
     # What is measured, and whether contact is kept, is taken from the response as it was solved.
-    finer = driven_by.finer(journey.time_step) if not_shown else 1
-    fine = response.histories(driven_by.line, finer) if not_shown else histories
+    finer = finer if not_shown and kept else 1
+    fine = response.histories(driven_by.line, finer) if finer > 1 else histories
     found = [
         *find.contact_lost(
             turned(steady.load[:, None] + fine.force.values[0]), journey.time_step / finer, vehicle.standing
@@ -205,7 +208,7 @@ def driven(
         "static_deflection": steady.deflection.copy(),
     }
     times = {"time": journey.times}
-    if not_shown:
+    if finer > 1:
         times["solved_time"] = solved_times = journey.time_step / finer * np.arange(journey.samples * finer)
         seen = excitation.elevation(journey.speed * solved_times)
         values |= {f"solved_{name}": value for name, value in _records(fine, steady, seen).items()}

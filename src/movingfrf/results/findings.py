@@ -116,8 +116,11 @@ def beyond_truncation(truncation: float, error: float) -> list[Finding]:
     ]
 
 
-def not_shown(shares: FloatArray, names: Sequence[str], time_step: float) -> list[Finding]:
-    """Shares of outputs, relative L2, above the Nyquist frequency of their record, whose steps are [s]."""
+def not_shown(shares: FloatArray, names: Sequence[str], time_step: float, *, kept: bool) -> list[Finding]:
+    """Shares of outputs, relative L2, above the Nyquist frequency of their record, whose steps are [s].
+
+    Memory may not hold the response as it was solved; then it is not kept.
+    """
     share, name = float(shares.max(initial=0.0)), names[int(shares.argmax())]
     if share <= THRESHOLDS.at_nyquist:
         return []
@@ -125,8 +128,13 @@ def not_shown(shares: FloatArray, names: Sequence[str], time_step: float) -> lis
         Finding(
             "beyond_nyquist",
             f"{share:.1%} of the root mean square of the {name} lies above {0.5 / time_step:g} Hz, which a record "
-            f"in steps of {time_step:g} s cannot show. Its values are right; measures and spectra are made of the "
-            "response as it was solved, which is kept beside it",
+            f"in steps of {time_step:g} s cannot show. Its values are right; "
+            + (
+                "measures and spectra are made of the response as it was solved, which is kept beside it"
+                if kept
+                else "memory does not hold the response as it was solved, so that measures and spectra are made of "
+                "the record and miss that part: a finer step would show it"
+            ),
         )
     ]
 
