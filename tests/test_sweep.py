@@ -325,6 +325,7 @@ def test_the_command_in_parts_and_in_one(truck):
     assert "another road of the same spectrum" in done.stdout
     rows = list(csv.reader(io.StringIO((parts / "table.csv").read_text())))
     assert rows[0][:3] == ["speed", "seed", "static_load front [N]"]
+    assert {"acceleration_rms bounce [m/s2]", "acceleration_rms pitch [rad/s2]"} <= set(rows[0])
     assert len(rows) == 201
     found = mf.sweep(truck, {"run.speed": np.linspace(8.0, 12.0, 100), "roughness.seed": [0, 1]})
     assert (parts / "table.csv").read_text() == as_csv(found)
@@ -558,6 +559,8 @@ def test_a_worker_that_is_killed(truck, tmp_path):
     assert "a worker has ended before its cases were solved: it was killed" in said.replace("\n", " ")
     assert "Traceback" not in said
     assert not any(Path(f"/proc/{worker}").exists() for worker in workers)
+    # The other one has not been waited for: it had three chunks or four to solve.
+    assert len(list((tmp_path / "kept" / "chunks").glob("*.npz"))) < 3
     done = command("sweep", truck, *over)
     assert done.returncode == 0, done.stderr
     assert "400 cases, none without an answer" in done.stdout

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from tests.faults import guideways, loads, metrics, response, roughness, shown, stepping, vehicles, written
+from tests.faults import guideways, loads, metrics, response, roughness, shown, stepping, sweeps, vehicles, written
 from tests.faults.fault import SOURCE, Fault
 
 PARTS: dict[str, ModuleType] = {
     module.__name__.rpartition(".")[2]: module
-    for module in (guideways, vehicles, roughness, metrics, response, loads, stepping, shown, written)
+    for module in (guideways, vehicles, roughness, metrics, response, loads, stepping, sweeps, shown, written)
 }
 
 

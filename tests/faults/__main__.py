@@ -147,6 +147,8 @@ def selection(fault: Fault | None) -> list[str]:
         return FILES + PROFILES + SELECTION
     if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE
+    if file.startswith("studies/sweep") or fault in faults_of("sweeps"):
+        return ["tests/test_sweep.py", *SELECTION]
     if file.startswith("scenarios/"):
         return SCENARIOS + SELECTION
     if file.startswith(SHOWN):
