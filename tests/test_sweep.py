@@ -160,6 +160,20 @@ def replace_step(truck, speed, step):
     return parse_scenario(text, folder=truck.parent).run()
 
 
+def test_steps_that_do_not_show_all_of_it(truck):
+    """Measures are of the response as it was solved, as those of `run` are, and not of what 50 ms show of it."""
+    table = mf.sweep(truck, {"run.speed": [10.0]}, time_step=0.05)
+    result = replace_step(truck, 10.0, 0.05)
+    assert "solved_contact_force" in result
+    reported = [measure.value for measure in mf.measures(result)]
+    found = [value for name in USUAL for value in table[name].values.ravel()]
+    assert sorted(found) == pytest.approx(sorted(reported), rel=1e-9)
+    fine = mf.sweep(truck, {"run.speed": [10.0]})
+    np.testing.assert_allclose(table.contact_force_rms, fine.contact_force_rms, rtol=0.02)
+    coarse = np.sqrt((result.contact_force.values**2).mean(axis=0))
+    assert (np.abs(table.contact_force_rms.values[0] - coarse) > 1e-3 * coarse).all()
+
+
 GRID = {"run.speed": [9.0, 10.0, 11.0], "vehicle.tyre_stiffness.0": [3e6, 4e6], "roughness.seed": [0, 1]}
 
 

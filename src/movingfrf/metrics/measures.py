@@ -58,9 +58,8 @@ def measures(result: xr.Dataset, *, since: float = 0.0) -> list[Measure]:
                 Measure(f"deflection at {point:g} m", "peak", peak(deflection), "m"),
             )
         )
-    with checking() as check:
-        result = check_coupled(check, result, "deflection", "static_deflection")
-    history = History(whole=result, since=since)
+    history = _as_solved(result, since)
+    result = history.whole
     return _everywhere(
         partial(Table.of_history, history=history, usual=True),
         contact=range(result.sizes["contact"]),
@@ -132,13 +131,20 @@ def usual_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
     dict of str to ndarray, shape (contact,) or (dof,)
         As `measures` has them.
     """
-    history = History(whole=result)
+    history = _as_solved(result)
     found = {}
     for name in names:
         place, *_, value = USUAL[name]
         assert value
         found[name] = np.array([value(history, number) for number in range(result.sizes[place])], float)
     return found
+
+
+def _as_solved(result: xr.Dataset, since: float = 0.0) -> History:
+    """Check a response; what is measured is taken of it as it was solved."""
+    with checking() as check:
+        result = check_coupled(check, result, "deflection", "static_deflection")
+    return History(whole=result, since=since)
 
 
 def assess(
