@@ -217,6 +217,26 @@ def test_another_sweep_is_refused_and_so_is_a_damaged_chunk(truck, tmp_path):
         mf.sweep(truck, {"run.speed": [9.0]}, store=kept)
 
 
+def test_files_are_part_of_a_sweep(truck, tmp_path):
+    """Cases of one content of a file and of another do not go together, wherever it is named."""
+    (tmp_path / "there").mkdir()
+    mf.write_vehicle(mf.catalogue("half_truck"), tmp_path / "there" / "truck.npz")
+    (tmp_path / "there" / "matrices.toml").write_text('[vehicle]\nkind = "vehicle_file"\nfile = "truck.npz"\n')
+    axes = {"roughness": ["road.csv"], "vehicle": ["there/matrices.toml", "other.toml"]}
+    table = mf.sweep(truck, axes, store=tmp_path / "kept", workers=2)
+    assert (table.status == "").all()
+    assert table.vehicle.values.tolist() == ["there/matrices.toml", "other.toml"]
+    assert mf.sweep(truck, axes, store=tmp_path / "kept").identical(table)
+    mf.write_vehicle(mf.catalogue("two_axle_truck"), tmp_path / "another.npz")
+    others = {name: (tmp_path / name).read_bytes() + b"\n" for name in ("road.csv", "other.toml")}
+    for file, other in (others | {"there/truck.npz": (tmp_path / "another.npz").read_bytes()}).items():
+        before = (tmp_path / file).read_bytes()
+        (tmp_path / file).write_bytes(other)
+        with pytest.raises(ValueError, match="holds another sweep: it differs in files"):
+            mf.sweep(truck, axes, store=tmp_path / "kept")
+        (tmp_path / file).write_bytes(before)
+
+
 def test_a_case_without_an_answer_says_why_and_ends_nothing(truck):
     # The second one would be off its profile, the third is no speed.
     axes = {"run.speed": [10.0, 45.0, -1.0]}

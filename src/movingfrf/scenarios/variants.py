@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from hashlib import blake2b, file_digest
 from pathlib import Path
 from typing import Any
 
@@ -144,13 +146,62 @@ def section_in(name: str, value: Any, folder: Path) -> Any:
     if not ending and name == "vehicle":
         return {"kind": "catalogue", "name": value}
     if ending == ".toml":
-        tables, *_ = tables_in(folder / value)
+        tables, there, _ = tables_in(folder / value)
         if name in tables:
-            return tables[name]
+            return _from_here(tables[name], there)
     others = {"vehicle": "vehicle_file", "roughness": "profile", "guideway": "sampled_guideway"}
     if name not in others or (ending == ".toml" and name != "vehicle"):
         raise ValueError(f"{name}: {value} holds no table [{name}]")
     return {"kind": others[name], "file": value}
+
+
+def _from_here(said: Any, folder: Path) -> Any:
+    """Let the names of files in tables from another folder lead there."""
+    if isinstance(said, dict):
+        return {key: _from_here(item, folder) for key, item in said.items()}
+    if isinstance(said, list):
+        return [_from_here(item, folder) for item in said]
+    file = _file_in(said, folder)
+    return said if file is None else str(file.resolve())
+
+
+def _file_in(said: Any, folder: Path) -> Path | None:
+    """Give the file that a value names; None if it names none."""
+    try:
+        return folder / said if isinstance(said, str) and (folder / said).is_file() else None
+    except (OSError, ValueError):  # too long for a name, or no name at all
+        return None
+
+
+def contents(said: Any, folder: Path) -> dict[str, str]:
+    """Tell the contents of all files that tables name, and of those that these name.
+
+    Parameters
+    ----------
+    said : object
+        Tables, lists and values.
+    folder : Path
+        Folder to which paths are relative.
+
+    Returns
+    -------
+    dict of str to str
+        By the name of the file a few letters that change with what it holds.
+    """
+    if isinstance(said, Mapping):
+        said = list(said.values())
+    if isinstance(said, list | tuple):
+        return {name: letters for item in said for name, letters in contents(item, folder).items()}
+    file = _file_in(said, folder)
+    if file is None:
+        return {}
+    with file.open("rb") as opened:
+        found = {str(file): file_digest(opened, lambda: blake2b(digest_size=8)).hexdigest()}
+    if file.suffix.lower() == ".toml":
+        with suppress(ValueError):  # whoever reads it says what is wrong
+            tables, there, _ = tables_in(file)
+            found |= contents(tables, there)
+    return found
 
 
 class Variants:
@@ -169,6 +220,7 @@ class Variants:
     def __init__(self, tables: dict[str, Any], folder: Path, name: str) -> None:
         self.tables, self.folder, self.name = tables, folder, name
         self._known = Known()
+        self._sections: dict[tuple[str, str], Any] = {}
 
     def at(self, values: Mapping[str, Any]) -> Scenario:
         """Take some values.
@@ -193,8 +245,14 @@ class Variants:
         tables: Any = self.tables
         for path, value in values.items():
             names = path.split(".")
-            there = section_in(names[0], value, self.folder) if len(names) == 1 else value
+            there = self._section(path, value) if len(names) == 1 and isinstance(value, str) else value
             tables = changed(tables, names, there)
         return scenario_of(
             tables, name=self.name, source=self.name, folder=self.folder, text=as_toml(tables), known=self._known
         )
+
+    def _section(self, name: str, value: str) -> Any:
+        """Read what stands for a whole table, once."""
+        if (name, value) not in self._sections:
+            self._sections[name, value] = section_in(name, value, self.folder)
+        return self._sections[name, value]

@@ -54,6 +54,22 @@ class Axes(tuple[Axis, ...]):
     __slots__ = ()
 
     @property
+    def told(self) -> list[dict[str, Any]]:
+        """All of it in numbers, texts, lists and tables."""
+        return [
+            {"paths": [*axis.paths], "values": [[*each] for each in axis.values], "name": axis.name}
+            for axis in self
+        ]
+
+    @classmethod
+    def of_told(cls, told: list[dict[str, Any]]) -> Axes:
+        """Take what `told` says."""
+        return cls(
+            Axis(paths=tuple(one["paths"]), values=tuple(map(tuple, one["values"])), name=one["name"])
+            for one in told
+        )
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """Places along each."""
         return tuple(axis.size for axis in self)

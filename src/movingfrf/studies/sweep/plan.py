@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from movingfrf._basics.version import VERSION
 from movingfrf.metrics.measures import STATISTICS, USUAL, Usual
 from movingfrf.scenarios.kinds import ROUGHNESS
 from movingfrf.scenarios.scenario import Drive, Scenario
-from movingfrf.scenarios.variants import Variants, section_in, tables_in
+from movingfrf.scenarios.variants import Variants, contents, tables_in
 from movingfrf.studies.sweep.axes import Axes, axes_of
 from movingfrf.studies.sweep.design import Design
 
@@ -38,6 +38,8 @@ class Plan:
         How each case is solved: `simulate` or `random`.
     design : dict
         How samples were drawn, where the axis is one of samples.
+    files : dict of str to str
+        Files that scenario and axes name, each with letters that change with what it holds.
     """
 
     tables: dict[str, Any]
@@ -47,6 +49,7 @@ class Plan:
     measures: tuple[str, ...]
     response: str = "simulate"
     design: dict[str, Any] = field(default_factory=dict)
+    files: dict[str, str] = field(default_factory=dict)
 
     @property
     def told(self) -> dict[str, Any]:
@@ -56,12 +59,11 @@ class Plan:
             "name": self.name,
             "folder": str(self.folder.resolve()),
             "scenario": self.tables,
-            "axes": [
-                {"paths": list(axis.paths), "values": [list(each) for each in axis.values]} for axis in self.axes
-            ],
+            "axes": self.axes.told,
             "measures": list(self.measures),
             "response": self.response,
             "design": self.design,
+            "files": self.files,
         }
 
     @property
@@ -73,16 +75,15 @@ class Plan:
     def of_text(cls, text: str) -> Plan:
         """Read what `text` says."""
         told = json.loads(text)
-        axes = {tuple(axis["paths"]): axis["values"] for axis in told["axes"]}
-        drawn = told["design"]
         return cls(
             tables=told["scenario"],
             folder=Path(told["folder"]),
             name=told["name"],
-            axes=named(axes_of(axes), drawn),
+            axes=Axes.of_told(told["axes"]),
             measures=tuple(told["measures"]),
             response=told["response"],
-            design=drawn,
+            design=told["design"],
+            files=told["files"],
         )
 
     @property
@@ -166,32 +167,20 @@ def plan_of(
     tables, folder, name = tables_in(scenario)
     if time_step is not None:
         tables = {**tables, "run": {**tables.get("run", {}), "time_step": time_step}}
-    # Files that stand for tables are read once, here: what they hold is part of the plan.
-    read = {axis.paths: [_read(axis.at(place), folder) for place in range(axis.size)] for axis in spanned}
-    measured = tuple(dict.fromkeys(asked))
-    drawn = axes.drawn if isinstance(axes, Design) else {}
     found = Plan(
         tables=tables,
         folder=folder,
         name=name,
-        axes=named(axes_of(read), drawn),
-        measures=measured,
+        axes=spanned,
+        measures=tuple(dict.fromkeys(asked)),
         response=response,
-        design=drawn,
+        design=axes.drawn if isinstance(axes, Design) else {},
+        # What they hold is part of the sweep: cases of another content do not go together.
+        files=contents([tables, *(axis.values for axis in spanned)], folder),
     )
     if not isinstance(_first(found).case, Drive):
         raise ValueError(f"{name}: prescribed loads are not swept; a vehicle and a road are needed")
     return found
-
-
-def named(axes: Axes, drawn: Mapping[str, Any]) -> Axes:
-    """Call the axis of a design as samples are called."""
-    return Axes(replace(axis, name="sample") for axis in axes) if drawn else axes
-
-
-def _read(values: Mapping[str, Any], folder: Path) -> list[Any]:
-    """Replace what stands for a whole table by the table."""
-    return [value if "." in path else section_in(path, value, folder) for path, value in values.items()]
 
 
 def _first(plan: Plan) -> Scenario:

@@ -218,7 +218,7 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
         "sweep",
         "Measures of many cases",
         scenario=json.dumps(plan.tables),
-        axes=json.dumps(plan.told["axes"]),
+        axes=json.dumps(plan.axes.told),
         findings=plan.findings,
         **({"design": json.dumps(plan.design)} if plan.design else {}),
     )
