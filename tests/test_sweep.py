@@ -25,6 +25,7 @@ from movingfrf._basics.toml_file import as_toml, tables_of
 from movingfrf.metrics.measures import USUAL
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.template import template
+from movingfrf.scenarios.variants import unit_of
 from movingfrf.studies.sweep import chunks
 from movingfrf.studies.sweep.files import as_csv
 from movingfrf.studies.sweep.page import findings, render, tables
@@ -125,6 +126,32 @@ def test_the_page_runs():
     found = doctest.testfile(str(page), module_relative=False)
     assert found.attempted > 4
     assert found.failed == 0
+
+
+@pytest.mark.parametrize(
+    ("path", "unit"),
+    [
+        ("run.speed", "m/s"),
+        ("run.speed_kmh", "km/h"),
+        ("vehicle.tyre_stiffness.1", "N/m"),
+        ("guideway.foundation.damping", "N s/m²"),
+        ("guideway.beam.mass", "kg/m"),
+        ("roughness.seed", ""),
+        ("roughness.road_class", ""),
+        ("vehicle", ""),
+        ("vehicle.none", ""),
+        ("none.speed", ""),
+    ],
+)
+def test_units_of_keys(path, unit):
+    assert unit_of(tables_of(TEXT), path) == unit
+
+
+def test_units_of_keys_in_lists_of_tables():
+    axle = {"kind": "axle", "position": 1.0, "mass": 700.0}
+    tables = {"vehicle": {"kind": "truck", "units": [{"mass": 4500.0, "axles": [axle]}]}}
+    assert unit_of(tables, "vehicle.units.0.axles.0.mass") == "kg"
+    assert unit_of(tables, "vehicle.units.0.axles.1.mass") == ""
 
 
 def test_names_and_units(truck):
@@ -358,7 +385,7 @@ def test_the_command_in_parts_and_in_one(truck):
     assert "200 cases, none without an answer" in done.stdout
     assert "another road of the same spectrum" in done.stdout
     rows = list(csv.reader(io.StringIO((parts / "table.csv").read_text())))
-    assert rows[0][:3] == ["speed", "seed", "static_load front [N]"]
+    assert rows[0][:3] == ["speed [m/s]", "seed", "static_load front [N]"]
     assert {"acceleration_rms bounce [m/s2]", "acceleration_rms pitch [rad/s2]"} <= set(rows[0])
     assert len(rows) == 201
     found = mf.sweep(truck, {"run.speed": np.linspace(8.0, 12.0, 100), "roughness.seed": [0, 1]})
@@ -458,7 +485,7 @@ def test_the_page_says_what_the_table_has(truck):
     at = table.dynamic_load_coefficient.max("contact")
     assert float(coefficient.cells[2]) == pytest.approx(float(at.max()), rel=1e-3)
     speed = float(at.max(["roughness", "vehicle"]).idxmax("speed"))
-    assert f"speed {speed:g}" in coefficient.cells[4]
+    assert f"speed {speed:g} m/s" in coefficient.cells[4]
     none = mf.sweep(truck, {"run.speed": [45.0, 10.0], "roughness": [FILE]}).isel(speed=[0])
     assert "1 of them have no answer" in render(none, "none", "")
     for few in ({"roughness.seed": range(3)}, {"vehicle": ["half_truck", "golden_car"]}, {"run.speed": [9.0]}):

@@ -12,7 +12,7 @@ import numpy as np
 
 from movingfrf._basics.checks import nearest
 from movingfrf._basics.toml_file import as_toml, tables_of, text_of
-from movingfrf.scenarios.kinds import DRIVE, PASSAGE
+from movingfrf.scenarios.kinds import DRIVE, PASSAGE, TABLES
 from movingfrf.scenarios.reading import Known, scenario_of
 from movingfrf.scenarios.scenario import Scenario
 
@@ -202,6 +202,41 @@ def contents(said: Any, folder: Path) -> dict[str, str]:
             tables, there, _ = tables_in(file)
             found |= contents(tables, there)
     return found
+
+
+def unit_of(tables: Tables, path: str) -> str:
+    """Give the unit of a key.
+
+    Parameters
+    ----------
+    tables : mapping
+        The scenario.
+    path : str
+        Where the key stands in it.
+
+    Returns
+    -------
+    str
+        The unit; empty if it has none, or is a whole table.
+
+    Examples
+    --------
+    >>> unit_of({"vehicle": {"kind": "half_car", "tyre_stiffness": [3e6, 4e6]}}, "vehicle.tyre_stiffness.0")
+    'N/m'
+    """
+    name, *rest = path.split(".")
+    family, table = {**PASSAGE, **DRIVE}.get(name), tables.get(name)
+    while family is not None and isinstance(table, Mapping) and rest:
+        kind = family.kinds.get(str(table.get("kind", family.default or next(iter(family.kinds)))))
+        key = next((key for key in kind.keys if key.name == rest[0]), None) if kind else None
+        if key is None:
+            return ""
+        family, table, rest = TABLES.get(key.type) or TABLES.get(key.item), table.get(rest[0]), rest[1:]
+        if family is None:
+            return key.unit
+        if isinstance(table, list) and rest and rest[0].isdecimal():
+            table, rest = (table[int(rest[0])] if int(rest[0]) < len(table) else None), rest[1:]
+    return ""
 
 
 class Variants:

@@ -30,7 +30,8 @@ def as_csv(table: xr.Dataset) -> str:
     shape = tuple(table.sizes[dim] for dim in dims)
     varied = [str(name) for name in table.coords if table[name].dims and set(table[name].dims) <= set(dims)]
     columns: list[tuple[str, Any]] = [
-        (name, np.broadcast_to(_spread(table[name], dims), shape).ravel()) for name in varied
+        (with_unit(name, table[name]), np.broadcast_to(_spread(table[name], dims), shape).ravel())
+        for name in varied
     ]
     for name, values in table.data_vars.items():
         if values.dims == dims:
@@ -48,6 +49,12 @@ def as_csv(table: xr.Dataset) -> str:
     for row in zip(*(values for _, values in columns), strict=True):
         writer.writerow([_cell(value) for value in row])
     return text.getvalue()
+
+
+def with_unit(words: str, values: xr.DataArray) -> str:
+    """Put the unit of values behind words, as `speed [m/s]`."""
+    unit = str(values.attrs.get("units", "1"))
+    return words if unit == "1" else f"{words} [{unit}]"
 
 
 def _spread(values: xr.DataArray, dims: tuple[Any, ...]) -> np.ndarray:

@@ -18,6 +18,7 @@ from movingfrf.reports.figures import SIZE, blank, drawing, illustrated
 from movingfrf.reports.page import page
 from movingfrf.reports.tables import SCALES, Column, Row, Setting, Table
 from movingfrf.studies.sweep.design import sensitivity
+from movingfrf.studies.sweep.files import with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -223,13 +224,20 @@ def _places(table: xr.Dataset, dim: str) -> tuple[FloatArray, list[str] | None]:
 
 def _value(table: xr.Dataset, dim: str, number_: int) -> str:
     """Write a value of an axis."""
-    value = table[dim].values[number_]
-    return plain(float(value)) if table[dim].dtype.kind in "iuf" else str(value)
+    return _said(table, dim, table[dim].values[number_])
+
+
+def _said(table: xr.Dataset, name: str, value: Any) -> str:
+    """Write a value of a key with its unit: six digits are more than any drawn one means."""
+    if table[name].dtype.kind not in "iuf":
+        return str(value)
+    unit = str(table[name].attrs.get("units", "1"))
+    return plain(float(f"{value:.6g}")) + ("" if unit == "1" else f" {unit}")
 
 
 def _axis_name(table: xr.Dataset, dim: str) -> str:
-    """Name an axis, with its unit where its key says one."""
-    return {"speed": "speed [m/s]", "speed_kmh": "speed [km/h]"}.get(dim, dim.replace("_", " "))
+    """Name an axis, with its unit where its key has one."""
+    return with_unit(dim.replace("_", " "), table[dim])
 
 
 def _caption(table: xr.Dataset, seen: Seen) -> str:
@@ -260,7 +268,7 @@ def _extreme(table: xr.Dataset, seen: Seen) -> str:
     at = int(np.nanargmin(seen.values) if seen.smallest else np.nanargmax(seen.values))
     if "design" in table.attrs:
         keys = [str(name) for name in table.coords if _varies(table, str(name))]
-        return ", ".join(f"{key} {number(float(table[key].values[at]))}" for key in keys)
+        return ", ".join(f"{key} {_said(table, key, table[key].values[at])}" for key in keys)
     places = np.unravel_index(at, seen.values.shape)
     return ", ".join(
         f"{dim} {_value(table, str(dim), int(place))}" for dim, place in zip(table.status.dims, places, strict=True)
@@ -289,7 +297,7 @@ def _setting(table: xr.Dataset, dim: str) -> Setting:
     """Say over what an axis goes."""
     values = table[dim].values
     if values.dtype.kind in "iuf" and values.size > 4:
-        said = f"{number(float(values.min()))} to {number(float(values.max()))}"
+        said = f"{_said(table, dim, values.min())} to {_said(table, dim, values.max())}"
     else:
         said = ", ".join(_value(table, dim, number_) for number_ in range(min(values.size, 6)))
         said += ", …" if values.size > 6 else ""

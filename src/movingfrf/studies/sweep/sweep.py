@@ -15,6 +15,7 @@ from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.undoing import scratch
 from movingfrf.results.labels import attributes
 from movingfrf.scenarios.scenario import Scenario
+from movingfrf.scenarios.variants import unit_of
 from movingfrf.studies.sweep.chunks import InFolder, InMemory, Kept, chunk_size
 from movingfrf.studies.sweep.design import Design
 from movingfrf.studies.sweep.plan import Plan, plan_of
@@ -194,7 +195,9 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
         if axis.name:
             coordinates[dimension] = (dimension, np.arange(axis.size), {"long_name": f"number of the {dimension}"})
         for path in axis.paths:
-            coordinates[names[path]] = (dimension, _coordinate(axis.along(path)), {"long_name": path})
+            unit = unit_of(plan.tables, path)
+            words = {"long_name": path, "units": unit} if unit else {"long_name": path}
+            coordinates[names[path]] = (dimension, _coordinate(axis.along(path)), words)
     places = {plan.known[name].place for name in plan.measures}
     widths = {}
     for label, place, part in (
@@ -203,10 +206,10 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
         ("dof_unit", "dof", "units"),
     ):
         if place in places:
-            words = each(part)
-            widths[place] = max(map(len, words), default=0)
+            called = each(part)
+            widths[place] = max(map(len, called), default=0)
             coordinates[place] = (place, np.arange(widths[place]), {"long_name": f"number of the {place}"})
-            coordinates[label] = _named(words, widths[place], place, dims, laid)
+            coordinates[label] = _named(called, widths[place], place, dims, laid)
     for name in plan.measures:
         usual = plan.known[name]
         values = [value for chunk in chunks for value in chunk.values[name]]
