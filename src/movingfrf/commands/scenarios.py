@@ -240,41 +240,18 @@ def random(
         from movingfrf._basics.output import replacing
         from movingfrf.metrics.measures import random_measures
         from movingfrf.reports.random import drawing_frequencies, paths_in_words, render
-        from movingfrf.response.random import random_response
         from movingfrf.results.files import summary_as_json
-        from movingfrf.results.findings import one_path, with_more
-        from movingfrf.scenarios.scenario import Drive
-        from movingfrf.scenarios.stepped import require_endless
 
         scenario = _read(file)
-        drive = scenario.case
-        if not isinstance(drive, Drive):
-            raise ValueError(f"{file}: prescribed loads have no random road; a vehicle and a spectrum are needed")
-        guideway, road = require_endless(drive.guideway, instead="cdfm"), drive.road
-        if road.spectrum is None:
-            raise ValueError(
-                f"{file}: the roughness has no spectrum ({road.description}): it is one road, not all of a kind. "
-                "`movingfrf run` computes the response to it. A random road needs a kind with a spectrum, such as "
-                "iso_road with the roughness and waviness that `movingfrf check` fits to a measured profile"
-            )
         folder = output if output is not None else file.parent / "out" / f"{scenario.name}-random"
         with replacing(folder) as files, warnings.catch_warnings():
             # Findings are printed with the results; no need to warn of them as well.
             warnings.simplefilter("ignore", ValidityWarning)
-            response = partial(
-                random_response,
-                guideway,
-                drive.vehicle,
-                road.spectrum,
-                speed=drive.journey.speed,
-                coherence=road.coherence,
-                exposure=exposure,
-                progress=stages.report,
-            )
-            result = response()
-            alike = one_path(road.profile.one_path, drive.vehicle.paths, drive.vehicle.across)
-            findings = with_more(result.attrs["findings"], [*alike, *drive.unusual])
-            result = result.assign_attrs(scenario=scenario.text, findings=findings, **drive.journey.given_speed)
+            response = partial(scenario.at_random, exposure=exposure, progress=stages.report)
+            try:
+                result = response()
+            except ValueError as refused:
+                raise ValueError(f"{file}: {refused}") from None
             drawn = response(frequency=drawing_frequencies(result))
             found = random_measures(result, slope=slope)
             files["random.nc"] = as_netcdf(result)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -76,26 +76,30 @@ class Usual(NamedTuple):
     value: Callable[[History, int], float | None] | None  # how it is taken of a history
 
 
-# Those that `measures` lists of a vehicle, by what tables of many cases call them.
-USUAL: dict[str, Usual] = {
-    taken.usual: Usual(
-        table.place,
-        f"{table.quantity}, {taken.name}".replace("force, ", "contact force, "),
-        entry.units.format(unit="m").replace("s²", "s2") + (" or rad/s2" if "{" in entry.units else ""),
-        taken.value,
-    )
-    for table in TABLES
-    for entry in table.entries
-    if (taken := entry.history) and taken.usual
-}
+@cache
+def usual() -> dict[str, Usual]:
+    """Give those that `measures` lists of a vehicle, by what tables of many cases call them."""
+    return {
+        taken.usual: Usual(
+            table.place,
+            f"{table.quantity}, {taken.name}".replace("force, ", "contact force, "),
+            entry.units.format(unit="m").replace("s²", "s2") + (" or rad/s2" if "{" in entry.units else ""),
+            taken.value,
+        )
+        for table in TABLES
+        for entry in table.entries
+        if (taken := entry.history) and taken.usual
+    }
 
 
-# The statistics of a random response, one for each contact or degree of freedom.
-STATISTICS: dict[str, Usual] = {
-    name: Usual(label.dims[0], label.long_name, label.units, None)
-    for name, label in SCHEMAS["random"].items()
-    if label.dims in (("contact",), ("dof",)) and not label.coordinate
-}
+@cache
+def statistics() -> dict[str, Usual]:
+    """Give the statistics of a random response of which there is one for each contact or degree of freedom."""
+    return {
+        name: Usual(label.dims[0], label.long_name, label.units, None)
+        for name, label in SCHEMAS["random"].items()
+        if label.dims in (("contact",), ("dof",)) and not label.coordinate
+    }
 
 
 def statistics_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
@@ -106,7 +110,7 @@ def statistics_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatAr
     result : xarray.Dataset
         What `random_response` returned.
     names : iterable of str
-        Keys of `STATISTICS`.
+        Keys of `statistics()`.
 
     Returns
     -------
@@ -124,7 +128,7 @@ def usual_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
     result : xarray.Dataset
         The coupled response of a vehicle.
     names : iterable of str
-        Keys of `USUAL`.
+        Keys of `usual()`.
 
     Returns
     -------
@@ -134,7 +138,7 @@ def usual_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
     history = _as_solved(result)
     found = {}
     for name in names:
-        place, *_, value = USUAL[name]
+        place, *_, value = usual()[name]
         assert value
         found[name] = np.array([value(history, number) for number in range(result.sizes[place])], float)
     return found

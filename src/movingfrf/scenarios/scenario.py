@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Fault, Finding, nearest, shown, spelt, warned
@@ -18,7 +19,7 @@ from movingfrf.guideways.guideway import Guideway, require_guideway
 from movingfrf.response.moving_loads import Forces, carried
 from movingfrf.response.simulation import driven
 from movingfrf.response.system import Prescribed
-from movingfrf.results.findings import with_more
+from movingfrf.results.findings import one_path, with_more
 from movingfrf.roughness.road import Road
 from movingfrf.scenarios.forces import Loads
 from movingfrf.scenarios.stepped import EXCHANGED, Division, coupled, elements, loaded, require_endless
@@ -304,6 +305,58 @@ class Scenario(Value):
         result = self.case.run(progress, method)
         findings = with_more(result.attrs["findings"], warned(self.case.unusual))
         return result.assign_attrs(scenario=self.text, findings=findings, **self.journey.given_speed)
+
+    def at_random(
+        self, *, exposure: float = 600.0, frequency: ArrayLike | None = None, progress: Progress = silent
+    ) -> xr.Dataset:
+        """Compute the response to all roads of the spectrum, without realising one.
+
+        Parameters
+        ----------
+        exposure : float
+            Duration for which largest values are expected [s].
+        frequency : array_like, optional
+            Frequencies at which densities are told [Hz]; None: where they are needed.
+        progress : callable
+            Called with the name of a stage and the fraction of it that is done.
+
+        Returns
+        -------
+        xarray.Dataset
+            What `random_response` returns, with the scenario's text in its attributes.
+
+        Raises
+        ------
+        ValueError
+            If loads are prescribed, the guideway is no endless one, or the roughness has no spectrum.
+        SolveError
+            If the case has no meaningful answer.
+        """
+        from movingfrf.response.random import random_response
+
+        drive = self.case
+        if not isinstance(drive, Drive):
+            raise ValueError("prescribed loads have no random road; a vehicle and a spectrum are needed")
+        guideway, road = require_endless(drive.guideway, instead="cdfm"), drive.road
+        if road.spectrum is None:
+            raise ValueError(
+                f"the roughness has no spectrum ({road.description}): it is one road, not all of a kind. "
+                "`movingfrf run` computes the response to it. A random road needs a kind with a spectrum, such as "
+                "iso_road with the roughness and waviness that `movingfrf check` fits to a measured profile"
+            )
+        result = random_response(
+            guideway,
+            drive.vehicle,
+            road.spectrum,
+            speed=drive.journey.speed,
+            coherence=road.coherence,
+            exposure=exposure,
+            frequency=frequency,
+            progress=progress,
+        )
+        alike = one_path(road.profile.one_path, drive.vehicle.paths, drive.vehicle.across)
+        findings = with_more(result.attrs["findings"], warned([*alike, *drive.unusual]))
+        return result.assign_attrs(scenario=self.text, findings=findings, **drive.journey.given_speed)
 
 
 def shortened(scenario: Scenario, duration: float) -> Scenario:

@@ -20,9 +20,6 @@ Part = dict[str, Any]
 
 TITLE = "A scenario of movingfrf"
 
-# Draft 07 is what editors of TOML know: they complete along oneOf and $ref, but not along if and then.
-DRAFT = "http://json-schema.org/draft-07/schema#"
-
 # Python type of a value → its schema.
 VALUES: Mapping[Any, Part] = {
     float: {"type": "number"},
@@ -44,7 +41,8 @@ def scenario_schema() -> Part:
     """
     numbers = {"type": "array", "items": {"anyOf": [{"type": "number"}, {"$ref": "#/definitions/numbers"}]}}
     return {
-        "$schema": DRAFT,
+        # Draft 07 is what editors of TOML know: they complete along oneOf and $ref, but not along if and then.
+        "$schema": "http://json-schema.org/draft-07/schema#",
         "title": TITLE,
         "description": f"movingfrf {VERSION}: a vehicle on a rough road, or prescribed loads. SI units throughout.",
         "oneOf": [_scenario(DRIVE), _scenario(PASSAGE)],

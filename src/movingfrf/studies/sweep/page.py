@@ -282,10 +282,17 @@ def _summary(table: xr.Dataset) -> str:
         words = (
             f"{count(cases, 'case')}, drawn ({drawn['kind'].replace('_', ' ')}) of {' and '.join(drawn['paths'])}."
         )
-        return words + (f" {without} of them have no answer." if without else " Every one has an answer.")
+        return words + _answered(without)
     dims = [f"{table.sizes[dim]} of {str(dim).replace('_', ' ')}" for dim in table.status.dims]
     words = f"{count(cases, 'case')}: {' × '.join(dims)}."
-    return words + (f" {without} of them have no answer." if without else " Every one has an answer.")
+    return words + _answered(without)
+
+
+def _answered(without: int) -> str:
+    """Say how many cases have no answer."""
+    if not without:
+        return " Every one has an answer."
+    return f" {without} of them {'has' if without == 1 else 'have'} no answer."
 
 
 def _varies(table: xr.Dataset, name: str) -> bool:

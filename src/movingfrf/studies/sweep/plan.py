@@ -10,12 +10,12 @@ from typing import Any
 
 from movingfrf._basics.checks import Finding, checking
 from movingfrf._basics.version import VERSION
-from movingfrf.metrics.measures import STATISTICS, USUAL, Usual
 from movingfrf.scenarios.kinds import ROUGHNESS
 from movingfrf.scenarios.scenario import Drive, Scenario
 from movingfrf.scenarios.variants import Variants, contents, tables_in
 from movingfrf.studies.sweep.axes import Axes, axes_of
 from movingfrf.studies.sweep.design import Design
+from movingfrf.studies.sweep.ways import Way, ways
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,19 +106,14 @@ class Plan:
         ]
 
     @property
-    def known(self) -> dict[str, Usual]:
-        """What can be asked of each case."""
-        return known_measures(self.response)
+    def way(self) -> Way:
+        """How each case is solved and measured."""
+        return ways()[self.response]
 
     @property
     def variants(self) -> Variants:
         """Its scenarios."""
         return Variants(self.tables, self.folder, self.name)
-
-
-def known_measures(response: str) -> dict[str, Usual]:
-    """Say what can be asked of a case that is solved so."""
-    return STATISTICS if response == "random" else USUAL
 
 
 def plan_of(
@@ -155,8 +150,8 @@ def plan_of(
         If a measure is unknown, an axis is none or none of its values suits the scenario, or that has no vehicle.
     """
     with checking() as check:
-        response = check.choice("response", response, ("simulate", "random"))
-        known = known_measures(response)
+        response = check.choice("response", response, ways())
+        known = ways()[response].measures
         names = known if measures is None else [measures] if isinstance(measures, str) else measures
         asked = [check.choice("measures", name, known) for name in names]
         if not asked:

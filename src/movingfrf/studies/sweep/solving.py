@@ -5,22 +5,16 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import SolveError, ValidityWarning
 from movingfrf._basics.compiling import compiling, numba_is_there
-from movingfrf.metrics.measures import statistics_of, usual_of
-from movingfrf.response.random import random_response
 from movingfrf.scenarios.scenario import Drive
-from movingfrf.scenarios.stepped import require_endless
 from movingfrf.scenarios.variants import Variants
 from movingfrf.studies.sweep.plan import Plan
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 class Solved(NamedTuple):
@@ -80,28 +74,14 @@ def _add(found: Solved, plan: Plan, variants: Variants, values: dict[str, object
         with warnings.catch_warnings():
             # They are told of each case.
             warnings.simplefilter("ignore", ValidityWarning)
-            result = _at_random(case) if plan.response == "random" else scenario.run()
+            result = plan.way.solve(scenario)
             told = [*json.loads(result.attrs["findings"])]
         dofs, units = (tuple(map(str, result[name].values)) for name in ("dof", "dof_unit"))
         findings = ", ".join(dict.fromkeys(str(one["code"]) for one in told))
-        taken = statistics_of if plan.response == "random" else usual_of
-        measured = taken(result, plan.measures)
+        measured = plan.way.taken(result, plan.measures)
     except (ValueError, SolveError) as refused:
         status = "; ".join(line.strip() for line in str(refused).splitlines())
     for name in plan.measures:
         found.values[name].append(measured[name])
     for where, what in zip(found[1:], (contacts, dofs, units, status, findings), strict=True):
         where.append(what)  # type: ignore[attr-defined]
-
-
-def _at_random(drive: Drive) -> xr.Dataset:
-    """Solve for all roads of the spectrum."""
-    if drive.road.spectrum is None:
-        raise ValueError(f"the roughness has no spectrum ({drive.road.description})")
-    return random_response(
-        require_endless(drive.guideway, instead="cdfm"),
-        drive.vehicle,
-        drive.road.spectrum,
-        speed=drive.journey.speed,
-        coherence=drive.road.coherence,
-    )

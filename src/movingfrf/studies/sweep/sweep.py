@@ -198,7 +198,7 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
             unit = unit_of(plan.tables, path)
             words = {"long_name": path, "units": unit} if unit else {"long_name": path}
             coordinates[names[path]] = (dimension, _coordinate(axis.along(path)), words)
-    places = {plan.known[name].place for name in plan.measures}
+    places = {plan.way.measures[name].place for name in plan.measures}
     widths = {}
     for label, place, part in (
         ("contact_name", "contact", "contacts"),
@@ -211,7 +211,7 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
             coordinates[place] = (place, np.arange(widths[place]), {"long_name": f"number of the {place}"})
             coordinates[label] = _named(called, widths[place], place, dims, laid)
     for name in plan.measures:
-        usual = plan.known[name]
+        usual = plan.way.measures[name]
         values = [value for chunk in chunks for value in chunk.values[name]]
         made = laid(values, np.full((cases, widths[usual.place]), np.nan))
         variables[name] = ((*dims, usual.place), made, {"units": usual.units, "long_name": usual.words})
