@@ -48,7 +48,7 @@ FAULTS = [
     Fault("chunks of another sweep", "studies/sweep/chunks.py", "if text == plan.text:", "if True:"),
     Fault("every chunk again", "studies/sweep/chunks.py", "if not self._file(number).exists()", "if True"),
     Fault("part of others", "studies/sweep/sweep.py", "number % part[1] == part[0] - 1", "number % part[1] == 0"),
-    Fault("last case left out", "studies/sweep/axes.py", "min(last, self.cases)", "min(last, self.cases - 1)"),
+    Fault("last case left out", "studies/sweep/chunks.py", "+ 1) * size, cases)", "+ 1) * size, cases - 1)"),
     Fault("worker that nobody misses", "studies/sweep/workers.py", "if process.returncode:", "if False:"),
     Fault("workers that live on", "studies/sweep/workers.py", "process.kill()", "pass"),
     Fault(
@@ -84,4 +84,6 @@ FAULTS = [
         '-1 if units.values[number] == "rad" else 0',
         "0",
     ),
+    Fault("files forgotten", "scenarios/variants.py", "found |= contents(tables, there)", "pass"),
+    Fault("files of another folder", "scenarios/variants.py", "_from_here(tables[name], there)", "tables[name]"),
 ]

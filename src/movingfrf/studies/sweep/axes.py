@@ -114,7 +114,7 @@ class Axes(tuple[Axis, ...]):
         """Go through some of the cases in the order in which they are solved: the place along each axis."""
         order = self._order()
         shape = tuple(self.shape[axis] for axis in order)
-        for case in range(first, min(last, self.cases)):
+        for case in range(first, last):
             places = dict(zip(order, np.unravel_index(case, shape), strict=True)) if order else {}
             yield tuple(int(places[axis]) for axis in range(len(self)))
 

@@ -37,6 +37,17 @@ def chunk_size(cases: int) -> int:
     return size
 
 
+def chunk_count(cases: int) -> int:
+    """Chunks of so many cases."""
+    return -(-cases // chunk_size(cases))
+
+
+def cases_of(number: int, cases: int) -> tuple[int, int]:
+    """Say from which of all cases on a chunk goes, and up to which, in the order in which they are solved."""
+    size = chunk_size(cases)
+    return number * size, min((number + 1) * size, cases)
+
+
 class Kept(Protocol):
     """Where chunks are kept."""
 
@@ -58,12 +69,12 @@ class InMemory:
 
     Parameters
     ----------
-    count : int
-        How many there are.
+    plan : Plan
+        The sweep.
     """
 
-    def __init__(self, count: int) -> None:
-        self._chunks: list[Solved | None] = [None] * count
+    def __init__(self, plan: Plan) -> None:
+        self._chunks: list[Solved | None] = [None] * chunk_count(plan.axes.cases)
 
     def missing(self) -> list[int]:
         """Numbers of the chunks that are not there."""
@@ -89,8 +100,6 @@ class InFolder:
         The folder; made if it is not there.
     plan : Plan
         The sweep.
-    count : int
-        How many chunks there are.
 
     Raises
     ------
@@ -98,8 +107,8 @@ class InFolder:
         If the folder holds another sweep.
     """
 
-    def __init__(self, folder: Path, plan: Plan, count: int) -> None:
-        self._folder, self._count = folder, count
+    def __init__(self, folder: Path, plan: Plan) -> None:
+        self._folder, self._count = folder, chunk_count(plan.axes.cases)
         said = folder / "sweep.json"
         if said.exists():
             _require_same(said, plan)

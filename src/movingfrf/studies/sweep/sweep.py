@@ -16,7 +16,7 @@ from movingfrf._basics.undoing import scratch
 from movingfrf.results.labels import attributes
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.scenarios.variants import unit_of
-from movingfrf.studies.sweep.chunks import InFolder, InMemory, Kept, chunk_size
+from movingfrf.studies.sweep.chunks import InFolder, InMemory, Kept, cases_of
 from movingfrf.studies.sweep.design import Design
 from movingfrf.studies.sweep.plan import Plan, plan_of
 from movingfrf.studies.sweep.solving import solved
@@ -137,21 +137,20 @@ def swept(
     Kept
         All chunks that are there.
     """
-    size = chunk_size(plan.axes.cases)
-    count = -(-plan.axes.cases // size)
-    kept: Kept = InMemory(count) if folder is None else InFolder(folder, plan, count)
+    kept: Kept = InMemory(plan) if folder is None else InFolder(folder, plan)
     mine = [number for number in kept.missing() if number % part[1] == part[0] - 1]
     if workers > 1 and folder is not None and len(mine) > 1:
         carried_on(folder, kept, mine, min(workers, len(mine)), progress)
         return kept
     variants = plan.variants
     for done, number in enumerate(mine):
+        first, last = cases_of(number, plan.axes.cases)
 
-        def told(cases: int, done: int = done) -> None:
-            progress("cases", (done + cases / size) / len(mine))
+        def told(cases: int, done: int = done, all_of_it: int = last - first) -> None:
+            progress("cases", (done + cases / all_of_it) / len(mine))
 
         told(0)
-        kept.put(number, solved(plan, variants, number * size, (number + 1) * size, told))
+        kept.put(number, solved(plan, variants, first, last, told))
     return kept
 
 
