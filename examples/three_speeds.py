@@ -27,7 +27,7 @@ def scenario(profile: Path) -> dict:
         },
         "vehicle": {"kind": "catalogue", "name": "tractor_semitrailer"},
         "roughness": {"kind": "profile", "file": str(profile)},
-        "run": {"speed_kmh": SPEEDS[0], "duration": 15.0, "start": begins + 20.0, "time_step": 2e-3},
+        "run": {"speed_kmh": SPEEDS[0], "duration": 15.0, "start": begins + 20.0},
     }
 
 

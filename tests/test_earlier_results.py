@@ -98,6 +98,12 @@ def test_a_result_is_measured_as_it_was(tmp_path, capsys):
     now = [row for row in now if row[:2] in known]
     assert [row[:2] + row[3:] for row in now] == [row[:2] + row[3:] for row in earlier]
     for mine, theirs in zip(now[1:], earlier[1:], strict=True):
+        # 0.1 took for a peak what a sample showed, and not what is between two of them.
+        if mine[1] in ("dynamic peak", "peak", "smallest total"):
+            further = float(mine[2]) - float(theirs[2])
+            assert (further <= 0) if mine[1] == "smallest total" else (further >= 0)
+            assert float(mine[2]) == pytest.approx(float(theirs[2]), rel=0.05), mine[:2]
+            continue
         assert float(mine[2]) == pytest.approx(float(theirs[2]), rel=ROUNDING, nan_ok=True), mine[:2]
 
 

@@ -412,9 +412,7 @@ def loads_too_coarse():
     return mf.moving_loads(TRACK, force, [0.0], speed=20.0, time_step=0.02)
 
 
-@pytest.mark.parametrize(
-    ("module", "solve"), [("simulation", drive_too_coarse), ("moving_loads", loads_too_coarse)]
-)
+@pytest.mark.parametrize(("module", "solve"), [("ride", drive_too_coarse), ("moving_loads", loads_too_coarse)])
 def test_a_response_that_memory_does_not_hold_is_not_kept(module, solve, monkeypatch):
     """Then the record is all there is, and the result says so: nothing runs out of memory for what is beside it."""
     with pytest.warns(mf.ValidityWarning, match=r"lies above 25 Hz.* is kept beside it"):

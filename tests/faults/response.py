@@ -7,9 +7,9 @@ from tests.faults.fault import Fault
 FAULTS = [
     Fault(
         "contact lost at the output's instants alone",
-        "response/simulation.py",
-        "fine.force.values[0]), journey.time_step / finer",
-        "histories.force.values[0]), journey.time_step",
+        "response/ride.py",
+        "force = self.fine.force",
+        "force = self.histories.force",
     ),
     Fault("threads of BLAS let loose", "response/batches.py", "limit(limits=1)", "limit(limits=2)"),
     # Spectra and time.
@@ -73,7 +73,7 @@ FAULTS = [
         "return min(max(float(peaks), driven_by.missing), 1.0)",
         "return 0.0",
     ),
-    Fault("guesses do not matter", "response/simulation.py", "if excitation.guessed <= 0:", "if True:"),
+    Fault("guesses do not matter", "response/ride.py", "if excitation.guessed <= 0:", "if True:"),
     Fault(
         "truncation's error as estimated",
         "response/accuracy.py",
@@ -129,7 +129,7 @@ FAULTS = [
         "return force, applied(self.frf, force)",
         "return force, applied(self.frf.swapaxes(0, 1), force)",
     ),
-    Fault("static sag missing", "response/simulation.py", "+ steady.deflection[:, None]", "+ 0.0"),
+    Fault("static sag missing", "response/ride.py", "+ self.steady.deflection[:, None]", "+ 0.0"),
     Fault(
         "truncation of the first case only",
         "response/influence.py",
@@ -224,9 +224,7 @@ FAULTS = [
     Fault("remembered: another speed", "response/system.py", " and known.speed == speed", ""),
     Fault("remembered: other frequencies", "response/system.py", " and bool((known.omega == omega).all())", ""),
     Fault("remembered: gains elsewhere", "response/system.py", "known.omega == asked", "True"),
-    Fault(
-        "remembered: another line", "response/simulation.py", "known.cut) == asked", "known.cut)[:2] == asked[:2]"
-    ),
+    Fault("remembered: another line", "response/ride.py", "known.cut) == asked", "known.cut)[:2] == asked[:2]"),
     Fault("remembered: other times", "response/simulation.py", "known.steps == steps", "True"),
     Fault("one car counts", "response/along.py", "self.order.kind.count(number)", "1"),
     Fault("Cramer's rule turned", "response/batches.py", "a * second - c * first", "a * second + c * first"),

@@ -149,6 +149,8 @@ class Checks:
 
     def finite(self, name: str, value: Any, unit: str, condition: str = "a finite number") -> float:
         """Demand a real, finite number of credible magnitude."""
+        if type(value) is float and -CREDIBLE.largest <= value <= CREDIBLE.largest:
+            return self.keep(name, value)
         value = plain(value)
         if not isinstance(value, Real) or isinstance(value, bool):
             wanted = in_brackets(condition, unit)
@@ -263,8 +265,8 @@ class Checks:
             hint = one_of(name, value) if shape == (None,) and array.ndim == 2 and array.shape[1] > 1 else ""
             self.refuse(name, f"must have shape {wanted}, got {array.shape}{hint}")
             return np.full([n or 1 for n in shape], np.nan)
-        bad = np.argwhere(~(np.abs(array) <= CREDIBLE.largest))
-        if len(bad):
+        if array.size and not np.abs(array).max() <= CREDIBLE.largest:
+            bad = np.argwhere(~(np.abs(array) <= CREDIBLE.largest))
             place = tuple(int(i) for i in bad[0])
             got = "a masked value" if masks(value) and np.isnan(array[place]) else repr(float(array[place]))
             self.refuse(

@@ -1,6 +1,6 @@
-"""Splines, smooth steps and linear prediction, compiled by numba (the extra `fast`).
+"""Splines, smooth steps, linear prediction and peaks, compiled by numba (the extra `fast`).
 
-`spline`, `smooth` and `prediction` have them in NumPy.
+`spline`, `smooth`, `prediction` and `peaks` have them in NumPy.
 """
 
 from __future__ import annotations
@@ -154,6 +154,68 @@ def smoothest_step(x, coefficients):
     return step
 
 
+@loop
+def _told(before, here, after):
+    """Top of a parabola through three samples if the middle one is the largest; else -inf."""
+    bend = before - 2.0 * here + after
+    if here >= before and here >= after and bend < 0.0:
+        return here - 0.125 * (after - before) ** 2 / bend
+    return -np.inf
+
+
+@loop
+def _between(row, n, weights, sign, around):
+    """Largest value near a sample, as those around it tell."""
+    places, reach = weights.shape[0] // 2, weights.shape[1] // 2
+    at = 1
+    for place in range(2 * places + 1):
+        value = 0.0
+        for k in range(2 * reach + 1):
+            value += weights[place, k] * row[n - reach + k]
+        around[place] = sign * value
+        if 0 < place < 2 * places and around[place] > around[at]:
+            at = place
+    return max(around[at], _told(around[at - 1], around[at], around[at + 1]))
+
+
+@loop
+def extremes(rows, sampled, steps, weights, near):
+    """Smallest and largest value of each record, between its samples too; as `peaks.extremes`.
+
+    `sampled` are those of its samples, and become the others.
+    """
+    count, size = rows.shape
+    reach, around = weights.shape[1] // 2, np.empty(weights.shape[0])
+    places, tops = np.empty((2, size), np.int64), np.empty((2, size))
+    for number in range(count):
+        row = rows[number]
+        # The top of a parabola lies no higher above its sample than an eighth of the largest step.
+        aside = (near + 0.125) * steps[number]
+        low, high = sampled[number, 0] + aside, sampled[number, 1] - aside
+        told, top = np.zeros(2, np.int64), np.full(2, -np.inf)
+        for n in range(1, size - 1):
+            here = row[n]
+            if low < here < high:
+                continue
+            side = 1 if here >= high else 0
+            sign = 2.0 * side - 1.0
+            value = _told(sign * row[n - 1], sign * here, sign * row[n + 1])
+            if value > -np.inf:
+                places[side, told[side]], tops[side, told[side]] = n, value
+                top[side] = max(top[side], value)
+                told[side] += 1
+        for side in range(2):
+            sign, limit = 2.0 * side - 1.0, top[side] - near * steps[number]
+            largest = sign * sampled[number, side]
+            for k in range(told[side]):
+                if tops[side, k] >= limit:
+                    inside = reach <= places[side, k] < size - reach
+                    value = _between(row, places[side, k], weights, sign, around) if inside else tops[side, k]
+                    largest = max(largest, value)
+            sampled[number, side] = sign * largest
+    return sampled
+
+
 def ready():
     """Compile what is here, or load it, for arrays as they are handed over."""
     knots, coefficients = np.array([0.0, 1.0]), np.ones((4, 1))
@@ -163,3 +225,4 @@ def ready():
     cubic(np.arange(4.0), np.arange(4.0), np.nan, np.nan)
     predicted(np.ones(1), reflected(np.arange(3.0), np.arange(3.0), 1), 1)
     smoothest_step(np.array([0.5]), of_step())
+    extremes(np.ones((1, 3)), np.ones((1, 2)), np.ones(1), np.ones((3, 3)), 0.25)

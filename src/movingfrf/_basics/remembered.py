@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import is_dataclass
+from collections.abc import Callable, Iterable
 from functools import wraps
 from typing import Any, TypeVar
 
@@ -148,16 +147,22 @@ def _memory(value: Any) -> dict[str, Any]:
 
 
 def _sealed(implied: Implied) -> Implied:
-    """Make the arrays in a value read-only: those of tuples, dicts and dataclasses too."""
-    if isinstance(implied, np.ndarray):
-        implied.setflags(write=False)
-    elif isinstance(implied, tuple):
-        for part in implied:
-            _sealed(part)
-    elif isinstance(implied, dict):
-        for part in implied.values():
-            _sealed(part)
-    elif is_dataclass(implied):
-        for name in implied.__dataclass_fields__:
-            _sealed(getattr(implied, name))
+    """Make the arrays in a value read-only: those of tuples, dicts and dataclasses too.
+
+    What remembers for itself, within another value, is somebody else's, and sealed by whoever remembers it.
+    """
+    fields = getattr(implied, "__dataclass_fields__", None)
+    _seal((implied,) if fields is None else (getattr(implied, name) for name in fields))
     return implied
+
+
+def _seal(parts: Iterable[Any]) -> None:
+    for part in parts:
+        if isinstance(part, np.ndarray):
+            part.setflags(write=False)
+        elif isinstance(part, tuple):
+            _seal(part)
+        elif isinstance(part, dict):
+            _seal(part.values())
+        elif hasattr(part, "__dataclass_fields__") and not isinstance(part, Remembering):
+            _seal(getattr(part, name) for name in part.__dataclass_fields__)

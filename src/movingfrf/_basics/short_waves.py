@@ -55,6 +55,13 @@ def filtered(record: FloatArray) -> FloatArray:
     return record
 
 
+@cache
+def _passed(samples: float) -> float:
+    """Least share that the filter leaves of the energy of waves shorter than so many samples."""
+    turned = (2.0 * math.sin(math.pi / samples)) ** 2
+    return math.prod(turned - zero for zero in _zeros()) ** 2
+
+
 class ShortWaves(NamedTuple):
     """Energy of what the filter leaves of records with even samples."""
 
@@ -73,5 +80,22 @@ class ShortWaves(NamedTuple):
         """
         if not 2.0 <= samples < HIGH_PASS.longest:
             return np.full_like(self.energy, np.inf)
-        turned = (2.0 * math.sin(math.pi / samples)) ** 2
-        return self.energy / math.prod(turned - zero for zero in _zeros()) ** 2
+        return self.energy / _passed(samples)
+
+    def shortest(self, share: float) -> float | None:
+        """Find so many samples that no more than a share of any record, root mean square, is in shorter waves.
+
+        None where that cannot be said.
+
+        Examples
+        --------
+        >>> wave = np.sin(2 * np.pi / 11.5 * np.arange(1000.0))
+        >>> energy = np.square(filtered(wave)).sum()
+        >>> ShortWaves(np.array([energy]), 500.0).shortest(1e-2)
+        8.0
+        """
+        most = share**2 * self.whole
+        for samples in np.arange(math.ceil(HIGH_PASS.longest) - 1.0, 2.0, -1.0).tolist():
+            if float(self.shorter(samples).max(initial=0.0)) <= most:
+                return samples
+        return None

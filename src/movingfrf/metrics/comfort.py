@@ -269,8 +269,9 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk", *, rec
         values, _, _ = _without_line(values, time_step)
     padded = scipy.fft.next_fast_len(len(values) + int(np.ceil(memory / time_step)), real=True)
     factor = _factors(name, padded, time_step)
-    spectra = scipy.fft.rfft(values, padded, axis=0)
-    return scipy.fft.irfft(spectra * factor[:, None], padded, axis=0)[: len(values)].reshape(shape)
+    spectra = scipy.fft.rfft(values.T, padded)
+    spectra *= factor
+    return scipy.fft.irfft(spectra, padded, overwrite_x=True)[:, : len(values)].T.reshape(shape)
 
 
 def running_rms(

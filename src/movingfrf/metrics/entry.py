@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.peaks import extremes
 from movingfrf.metrics.comfort import (
     WEIGHTING_OF,
     WEIGHTINGS,
@@ -23,7 +24,7 @@ from movingfrf.metrics.loads import (
     after,
     common_points,
     contact_loss,
-    dynamic_load_coefficient,
+    load_coefficient,
     road_stress_factor,
     road_wear,
     samples_before,
@@ -34,6 +35,26 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+# From histories (time, *s) to numbers (*s).
+Measuring = Callable[[FloatArray], FloatArray]
+
+
+def rms(values: FloatArray) -> FloatArray:
+    """Root mean square, (time, *s) to (*s)."""
+    return np.sqrt(np.mean(np.square(values), axis=0))
+
+
+def lowest(values: FloatArray) -> FloatArray:
+    """Smallest value, (time, *s) to (*s), between samples too."""
+    return extremes(values.T)[0].T
+
+
+def peak(values: FloatArray) -> FloatArray:
+    """Largest magnitude, (time, *s) to (*s), between samples too."""
+    low, high = extremes(values.T)
+    return np.maximum(high, -low).T
+
+
 class Place(NamedTuple):
     """A contact, a path or a degree of freedom: its name, and what stands for the words in braces of an entry."""
 
@@ -41,20 +62,46 @@ class Place(NamedTuple):
     words: Mapping[str, str] = {}
 
 
+class Arrays(dict[str, Any]):
+    """Variables of a result without their labels, taken as they are asked for."""
+
+    def __init__(self, result: xr.Dataset) -> None:
+        super().__init__()
+        self._result = result
+
+    def __missing__(self, name: str) -> Any:
+        """Take a variable."""
+        self[name] = self._result[name].values
+        return self[name]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class History:
     """The response of a vehicle over time, and what is asked about it; what several measures need is found once."""
 
-    whole: xr.Dataset
+    arrays: Mapping[str, Any]  # variables by name, (time, place) or (place,)
+    step: float  # of the record [s]
+    labelled: xr.Dataset | None = None  # the same as a result, which other than the usual measures take
     weighting: str = "Wk"  # of translations
     slope: float | None = None  # exponent of an S-N curve
     since: float = 0.0  # what is left out at the start [s]
     judged: bool = False  # whether people are where the degrees of freedom are
 
+    @classmethod
+    def of(cls, result: xr.Dataset, **asked: Any) -> History:
+        """Take a result, and what is asked about it."""
+        return cls(arrays=Arrays(result), step=float(result.attrs["time_step"]), labelled=result, **asked)
+
+    @property
+    def whole(self) -> xr.Dataset:
+        """The response as a result."""
+        assert self.labelled is not None, "a measure that needs labels is not one of the usual ones"
+        return self.labelled
+
     @cached_property
-    def step(self) -> float:
-        """Step of the record [s]."""
-        return float(self.whole.attrs["time_step"])
+    def first(self) -> int:
+        """How many samples are left out at the start."""
+        return samples_before(self.since, self.step, len(self.arrays["acceleration"])) if self.since else 0
 
     @cached_property
     def result(self) -> xr.Dataset:
@@ -64,7 +111,7 @@ class History:
     @cached_property
     def coefficients(self) -> FloatArray:
         """Dynamic load coefficients, shape (contact,)."""
-        return dynamic_load_coefficient(self.result)
+        return load_coefficient(self.measured(rms, "contact_force"), self.arrays["static_load"])
 
     @cached_property
     def stress(self) -> FloatArray:
@@ -90,13 +137,27 @@ class History:
     def _felt(self) -> dict[int, Comfort]:
         return {}
 
+    @cached_property
+    def _measured(self) -> dict[tuple[Measuring, str], FloatArray]:
+        return {}
+
+    def measured(self, measure: Measuring, variable: str) -> FloatArray:
+        """Measure a variable at all places at once, (time, place) to (place,), once."""
+        if (measure, variable) not in self._measured:
+            self._measured[measure, variable] = measure(self.arrays[variable][self.first :])
+        return self._measured[measure, variable]
+
     def weighted(self, dof: int) -> FloatArray:
-        """Weight an acceleration before it is cut."""
+        """Weight an acceleration before it is cut; where all are asked for, with all that are weighted alike."""
         if dof not in self._weighted:
-            acceleration = self.whole.acceleration.values[:, dof]
-            first = samples_before(self.since, self.step, acceleration.size)
+            units, acceleration = self.arrays["dof_unit"], self.arrays["acceleration"]
+            alike = [dof] if self.judged else np.flatnonzero(units == units[dof]).tolist()
             weighting = self.place("dof", dof).words["weighting"]
-            self._weighted[dof] = weighted(acceleration, self.step, weighting)[first:]
+            together = 8  # channels at a time [1 to 64: memory and time only]
+            for first in range(0, len(alike), together):
+                some = alike[first : first + together]
+                found = weighted(acceleration.T[some].T, self.step, weighting)[self.first :]
+                self._weighted.update(zip(some, found.T, strict=True))
         return self._weighted[dof]
 
     def felt(self, dof: int) -> Comfort:
@@ -106,23 +167,14 @@ class History:
             self._felt[dof] = felt(self.weighted(dof), self.step, weighting)
         return self._felt[dof]
 
-    @cached_property
-    def _arrays(self) -> dict[str, FloatArray]:
-        return {}
-
-    def _array(self, variable: str) -> FloatArray:
-        """Take a variable without its labels, once."""
-        if variable not in self._arrays:
-            self._arrays[variable] = self.result[variable].values
-        return self._arrays[variable]
-
     def value(self, variable: str, number: int) -> float:
         """Value of a variable at a contact or a degree of freedom."""
-        return float(self._array(variable)[number])
+        return float(self.arrays[variable][number])
 
     def column(self, variable: str, number: int) -> FloatArray:
         """History of a variable at a contact or a degree of freedom."""
-        return self._array(variable)[:, number]
+        history: FloatArray = self.arrays[variable][self.first :, number]
+        return history
 
     def place(self, kind: str, number: int) -> Place:
         """Name a contact, a path or a degree of freedom."""
@@ -130,10 +182,10 @@ class History:
             return Place(f"path {np.unique(self.result.path.values)[number]}")
         if kind == "contact":
             return Place(f"contact {number}")
-        unit = str(self.whole.dof_unit.values[number])
+        unit = str(self.arrays["dof_unit"][number])
         weighting = self.weighting if unit == "m" else "We"
         by = f"{WEIGHTINGS[weighting].standard}, {weighting}"
-        return Place(str(self.whole.dof.values[number]), {"unit": unit, "weighting": weighting, "by": by})
+        return Place(str(self.arrays["dof"][number]), {"unit": unit, "weighting": weighting, "by": by})
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

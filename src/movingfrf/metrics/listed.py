@@ -11,10 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from movingfrf._basics.arrays import FloatArray
 from movingfrf.metrics import impact
 from movingfrf.metrics.comfort import ISO_2631
-from movingfrf.metrics.entry import Entry, History, OfHistory, OfRandom, Random, Table
+from movingfrf.metrics.entry import Entry, History, Measuring, OfHistory, OfRandom, Random, Table, lowest, peak, rms
 from movingfrf.metrics.fatigue import equivalent_amplitude
 from movingfrf.metrics.loads import road_stress_factor
 
@@ -34,19 +33,9 @@ class Sources:
 SOURCES = Sources()
 
 
-def rms(values: FloatArray) -> float:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(values**2)))
-
-
-def peak(values: FloatArray) -> float:
-    """Largest magnitude."""
-    return float(np.abs(values).max())
-
-
-def _of(measure: Callable[[FloatArray], float], variable: str) -> Callable[[History, int], float]:
+def _of(measure: Measuring, variable: str) -> Callable[[History, int], float]:
     """Measure a variable as it is."""
-    return lambda of, number: measure(of.column(variable, number))
+    return lambda of, number: float(of.measured(measure, variable)[number])
 
 
 def _variable(name: str) -> Callable[[History | Random, int], float]:
@@ -55,7 +44,7 @@ def _variable(name: str) -> Callable[[History | Random, int], float]:
 
 
 def _smallest(of: History, contact: int) -> float:
-    return of.value("static_load", contact) + float(of.column("contact_force", contact).min())
+    return of.value("static_load", contact) + float(of.measured(lowest, "contact_force")[contact])
 
 
 def _equivalent(of: History, contact: int) -> float | None:
@@ -66,7 +55,7 @@ def _equivalent(of: History, contact: int) -> float | None:
 
 
 def _about_the_sag(of: History, contact: int) -> float:
-    return rms(of.column("deflection", contact) - of.value("static_deflection", contact))
+    return float(rms(of.column("deflection", contact) - of.value("static_deflection", contact)))
 
 
 def _too_short(of: History, path: int) -> str:
@@ -246,7 +235,7 @@ ACCELERATIONS = Table(
             "{unit}/s²",
             OfHistory(
                 "weighted rms",
-                lambda of, n: rms(of.weighted(n)),
+                lambda of, n: float(rms(of.weighted(n))),
                 "{by}",
                 _reactions,
                 usual="weighted_acceleration_rms",

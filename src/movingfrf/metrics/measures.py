@@ -11,9 +11,9 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking
 from movingfrf.metrics.comfort import WEIGHTINGS
-from movingfrf.metrics.entry import History, Random, Table
+from movingfrf.metrics.entry import History, Random, Table, peak, rms
 from movingfrf.metrics.fatigue import check_random
-from movingfrf.metrics.listed import TABLES, peak, rms
+from movingfrf.metrics.listed import TABLES
 from movingfrf.metrics.loads import after, check_coupled
 from movingfrf.results.labels import SCHEMAS, Measure, contact_names, listed
 
@@ -54,8 +54,8 @@ def measures(result: xr.Dataset, *, since: float = 0.0) -> list[Measure]:
             measure
             for point, deflection in zip(result.point.values, after(result, since).deflection.values.T, strict=True)
             for measure in (
-                Measure(f"deflection at {point:g} m", "rms", rms(deflection), "m"),
-                Measure(f"deflection at {point:g} m", "peak", peak(deflection), "m"),
+                Measure(f"deflection at {point:g} m", "rms", float(rms(deflection)), "m"),
+                Measure(f"deflection at {point:g} m", "peak", float(peak(deflection)), "m"),
             )
         )
     history = _as_solved(result, since)
@@ -120,13 +120,13 @@ def statistics_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatAr
     return {name: result[name].values for name in names}
 
 
-def usual_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
+def usual_of(history: History, names: Iterable[str]) -> dict[str, FloatArray]:
     """Take usual measures of every contact and degree of freedom.
 
     Parameters
     ----------
-    result : xarray.Dataset
-        The coupled response of a vehicle.
+    history : History
+        The response of a vehicle, with or without labels.
     names : iterable of str
         Keys of `usual()`.
 
@@ -135,12 +135,12 @@ def usual_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
     dict of str to ndarray, shape (contact,) or (dof,)
         As `measures` has them.
     """
-    history = _as_solved(result)
+    count = {"contact": len(history.arrays["static_load"]), "dof": len(history.arrays["dof_unit"])}
     found = {}
     for name in names:
         place, *_, value = usual()[name]
         assert value
-        found[name] = np.array([value(history, number) for number in range(result.sizes[place])], float)
+        found[name] = np.array([value(history, number) for number in range(count[place])], float)
     return found
 
 
@@ -148,7 +148,7 @@ def _as_solved(result: xr.Dataset, since: float = 0.0) -> History:
     """Check a response; what is measured is taken of it as it was solved."""
     with checking() as check:
         result = check_coupled(check, result, "deflection", "static_deflection")
-    return History(whole=result, since=since)
+    return History.of(result, since=since)
 
 
 def assess(
@@ -214,7 +214,7 @@ def assess(
         weighting = check.choice("weighting", weighting, WEIGHTINGS)
         if slope is not None:
             slope = check.positive("slope", slope, "1")
-    history = History(whole=result, weighting=weighting, slope=slope, since=since, judged=dofs is not None)
+    history = History.of(result, weighting=weighting, slope=slope, since=since, judged=dofs is not None)
     return _everywhere(
         partial(Table.of_history, history=history),
         contact=at_contacts,

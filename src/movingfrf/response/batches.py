@@ -27,6 +27,7 @@ class Batch:
     entries: int = 2**18  # of the matrices of all of them: of many contacts, fewer frequencies [2**14 to 2**22]
     fewest: int = 16  # frequencies, of however many contacts [1 to 256]
     at_once: int = 8  # contacts of a train; more are solved car by car [2 to 32]
+    bytes_per_value: int = 100  # per frequency, output and contact at the peak of a transfer or a random response
     looped: int = 16  # columns of a matrix, up to which BLAS gains nothing from so many small ones [2 to 32]
 
     def frequencies(self, entries: int) -> int:

@@ -118,6 +118,13 @@ def tables(guideway, ahead, vehicle, omega):
 
 
 @loop
+def moving_frf(guideway, ahead, omega):
+    """Give the moving FRF at distinct offsets, and where a response is infinite."""
+    (kappa, weight, forward), infinite = waves(guideway, omega)
+    return summed(kappa, weight, forward, ahead), infinite
+
+
+@loop
 def answered(frf, which, dynamic, vehicle, omega, kept, roughness):
     """Answer to roughness; as `System.answer`.
 
@@ -248,6 +255,7 @@ def ready():
     vehicle = Numbers(poles, known, direct, known, moving, known, prescribed, 1)
     rough = np.ones((1, 1, 1), complex)
     frf, dynamic, _ = tables(guideway, ahead, vehicle, omega)
+    moving_frf(guideway, ahead, omega)
     turned(frf[which], dynamic, 0.9)
     sizes = per_unit(frf, which, dynamic, vehicle, omega)
     sizes.setflags(write=False)

@@ -201,6 +201,12 @@ class Line(Remembering):
         return self.solved // 2 + 1
 
     @property
+    @remembered
+    def told(self) -> tuple[float, ...]:
+        """What a transform depends on."""
+        return (self.samples, self.time_step, self.padded, self.solved, self.decay, self._faded_within)
+
+    @property
     def time(self) -> FloatArray:
         """Times of the record [s], from zero."""
         return np.arange(self.samples) * self.time_step

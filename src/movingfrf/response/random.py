@@ -25,13 +25,13 @@ from movingfrf._basics.progress import Progress, silent
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.metrics.comfort import WEIGHTING_OF
 from movingfrf.metrics.loads import load_coefficient
-from movingfrf.response.batches import unthreaded
+from movingfrf.response.batches import BATCH, unthreaded
 from movingfrf.response.quadrature import Lines, Unresolved, resolved
 from movingfrf.response.solve import solve
 from movingfrf.response.statistics import lift_off, lifting_off, peak_factor, spectral_rate
 from movingfrf.response.survey import survey
 from movingfrf.response.system import System
-from movingfrf.response.transfer import BYTES_PER_VALUE, coordinates
+from movingfrf.response.transfer import coordinates
 from movingfrf.results.findings import Finding
 from movingfrf.results.labels import RANDOM_QUANTITIES, attributes, labelled, turned
 from movingfrf.roughness.excitation import Touch
@@ -212,7 +212,7 @@ def random_response(
         axis: dict[str, ArrayLike] = {**coordinates(vehicle, lines.frequency), "bandwidth": lines.bandwidth}
         shown = lines.density
     else:
-        require_memory(BYTES_PER_VALUE * wanted.size * _outputs(vehicle), f"{wanted.size} frequencies")
+        require_memory(BATCH.bytes_per_value * wanted.size * _outputs(vehicle), f"{wanted.size} frequencies")
         axis, shown = coordinates(vehicle, wanted), densities(wanted)
     values: dict[str, ArrayLike] = {
         **axis,

@@ -15,6 +15,7 @@ import numpy as np
 import scipy.fft
 
 from movingfrf._basics.arrays import ComplexArray, FloatArray, require_memory
+from movingfrf._basics.remembered import Remembering, latest
 from movingfrf._basics.short_waves import ShortWaves
 from movingfrf._basics.smooth import smoothest_step
 from movingfrf.response.batches import BATCH
@@ -91,6 +92,16 @@ class Sampling:
     estimated: float = 1e-4  # [1e-5 to 5e-4]
     slight: float = 1e-2  # up to here it is measured from what it leaves out alone [1e-3 to 2e-2]
     affordable: int = 2**15  # frequencies; of more of them it stays an upper estimate [time only]
+    # Where steps are not stated, a record shows the shortest waves of a road in steps of so much of their length:
+    # values between samples are known there as well (`peaks`). Of its elevation no more than this share is in
+    # shorter ones; if that turns out to matter, the record is kept in finer steps. No coarser than this, and no
+    # fewer than so many.
+    observed: float = 0.4  # [0.2 to 0.4]
+    shorter: float = 1e-3  # [1e-5 to 3e-3]
+    coarsest: float = 0.02  # [s; 1e-3 to 0.05]
+    at_least: int = 256  # [64 to 1024]
+    # What is seen of a road is remembered for the next vehicle in periods of so many steps at most.
+    remembered: int = 2**16  # [2**12 to 2**20: time and memory only]
     # A sampled force jumps where its third differences are those of a jump, up to this share of it, and no others
     # are within so many steps.
     like: float = 0.2  # [0.1 to 0.3]
@@ -98,6 +109,15 @@ class Sampling:
 
 
 SAMPLING = Sampling()
+
+
+class LookedAt(NamedTuple):
+    """What drives a system along a line."""
+
+    line: tuple[float, ...]  # what of a line it depends on
+    given: Given
+    parts: ComplexArray  # as `Line.looked_at` gives them
+    energy: FloatArray
 
 
 class Driving(NamedTuple):
@@ -108,6 +128,19 @@ class Driving(NamedTuple):
     finest: float | None = None  # the same where they are closest [s]; None: it is the same everywhere
     # How little of it may be in its short periods; None if that is not known.
     short: ShortWaves | None = None
+    # What remembers the latest look at it, if that may serve again.
+    remembers: Remembering | None = None
+
+    def looked_at(self, line: Line) -> LookedAt:
+        """Transform it, and tell how much there is of it."""
+
+        def look() -> LookedAt:
+            given = self.given(line)
+            return LookedAt(line.told, given, *line.looked_at(given))
+
+        if self.remembers is None or line.solved > SAMPLING.remembered:
+            return look()
+        return latest(self.remembers, "looked at", lambda known: known.line == line.told, look)
 
     def points(self, period: float, wanted: Wanted, finer: float = np.inf) -> float:
         """Say in how many steps per period [s] sampling begins: no finer than is needed as far as one knows.
@@ -220,8 +253,7 @@ def excited(
         line = at_first(system, driving, line, solved_step, wanted)
     energies = (np.inf, np.inf, np.inf) if after is None else after.energies[:-1]
     while True:
-        given = driving.given(line)
-        parts, energy = line.looked_at(given)
+        _, given, parts, energy = driving.looked_at(line)
         if after is None:
             found = influence(system, line, energy, truncation, wanted.alike, driving.images)
         else:
@@ -256,7 +288,7 @@ def excited(
             ends = min(passed, found.negligible_from(found.whole, at_once, energy))
         count = int(ends * (1 + fades)) + 2
         if count <= BATCH.frequencies(system.ports**2):
-            count = _sixteenths(count)
+            count = sixteenths(count)
     else:
         count = stated
     count = min(count, line.size)
@@ -325,8 +357,8 @@ def _with_points(system: Sized, line: Line, points: float) -> Line:
     return line.solved_in(scipy.fft.next_fast_len(int(points), real=True))
 
 
-def _sixteenths(count: int) -> int:
-    """Round a number up in its fifth binary digit: what one road needs of a system then serves others."""
+def sixteenths(count: int) -> int:
+    """Round a number up in its fifth binary digit: what one case needs then serves others."""
     step = 1 << max(count.bit_length() - 5, 0)
     return -(-count // step) * step
 

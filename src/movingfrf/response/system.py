@@ -138,6 +138,22 @@ class PerUnit(NamedTuple):
     found: FloatArray
 
 
+class AtSpeed(NamedTuple):
+    """A track as seen by whoever travels along it."""
+
+    speed: float
+    seen: Seen
+
+
+class Moving(NamedTuple):
+    """Moving FRFs of a track."""
+
+    speed: float
+    ahead: FloatArray  # (offset,) [m]
+    omega: ComplexArray  # (frequency,)
+    frf: ComplexArray  # (offset, frequency)
+
+
 class Travelled(NamedTuple):
     """On what a vehicle travelled, how fast, and what is remembered of that."""
 
@@ -216,11 +232,16 @@ class System(Remembering):
         return contacts, contacts, dofs, dofs
 
     @property
-    @remembered
     def seen(self) -> Seen:
         """The dynamic stiffness of a track as the vehicle sees it."""
-        assert isinstance(self.guideway, Track)
-        return Seen.of(self.guideway.stiffness(), self.speed)
+        track, speed = cast("Track", self.guideway), self.speed
+        found = latest(
+            track,
+            "as seen",
+            lambda known: known.speed == speed,
+            lambda: AtSpeed(speed, Seen.of(track.stiffness(), speed)),
+        )
+        return found.seen
 
     @property
     @remembered
@@ -265,10 +286,32 @@ class System(Remembering):
         if self.train:
             return self.at(omega)
 
-        def fits(known: Tables) -> bool:
+        def fits(known: Tables | Moving) -> bool:
             return known.omega.size == omega.size and bool((known.omega == omega).all())
 
-        return latest(self, "solved", fits, lambda: cast("Tables", self.at(omega)))
+        def compute() -> Tables:
+            if not isinstance(self.guideway, Track):
+                return cast("Tables", self.at(omega))
+            distinct, which = self.offsets
+            # Another vehicle with its contacts in the same places finds it there.
+            moving = latest(
+                self.guideway,
+                "moving frf",
+                lambda known: known.speed == self.speed and np.array_equal(known.ahead, distinct) and fits(known),
+                lambda: Moving(self.speed, distinct, omega, self._moving(omega)),
+            )
+            return Tables(omega, moving.frf[which], self.dynamics.stiffness(omega))
+
+        return latest(self, "solved", fits, compute)
+
+    def _moving(self, omega: ComplexArray) -> ComplexArray:
+        """Evaluate the moving FRF of a track at distinct offsets, shape (offset, frequency)."""
+        if self._numbers and (loops := loops_for("response.compiled", 0)):
+            guideway, ahead, _, _ = self._numbers
+            found, infinite = loops.moving_frf(guideway, ahead, handed(omega))
+            self._require_finite(omega, infinite, found)
+            return cast("ComplexArray", found)
+        return waves(self.seen, self.speed, omega).summed(self.offsets.ahead)
 
     def foresee(self, omegas: Sequence[ComplexArray]) -> None:
         """Evaluate both sides where `at` will be asked for them, as many sets in one go as a batch holds."""

@@ -11,7 +11,7 @@ from movingfrf._basics.arrays import FloatArray, require_memory
 from movingfrf._basics.checks import checking
 from movingfrf._basics.wording import count
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
-from movingfrf.response.batches import unthreaded
+from movingfrf.response.batches import BATCH, unthreaded
 from movingfrf.response.solve import solve
 from movingfrf.response.survey import survey
 from movingfrf.response.system import System
@@ -21,10 +21,6 @@ from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-# Bytes per frequency, output and contact at the peak of a computation.
-BYTES_PER_VALUE = 100
 
 
 @unthreaded
@@ -81,7 +77,7 @@ def transfer(guideway: Guideway, vehicle: Vehicle, *, speed: float, frequency: A
             check.refuse("frequency", f"must hold frequencies of at least zero [Hz], got {least}")
     contacts, dofs = len(vehicle.contacts), len(vehicle.dof_names)
     require_memory(
-        BYTES_PER_VALUE * lines.size * contacts * (contacts + dofs),
+        BATCH.bytes_per_value * lines.size * contacts * (contacts + dofs),
         f"a transfer over {count(lines.size, 'frequency', 'frequencies')}",
     )
     system = System.of(guideway, vehicle, speed)

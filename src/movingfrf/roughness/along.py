@@ -11,7 +11,7 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.prediction import predicted, predicting
 from movingfrf._basics.remembered import recalled
-from movingfrf._basics.short_waves import HIGH_PASS, filtered
+from movingfrf._basics.short_waves import HIGH_PASS, ShortWaves, filtered
 from movingfrf._basics.smooth import memory, onward, smooth_step
 from movingfrf._basics.spline import Piecewise, cubic
 from movingfrf.roughness.profile import Profile
@@ -67,6 +67,44 @@ class Rough(NamedTuple):
         begin = min(max(int(first / self.step) - HIGH_PASS.order, 0), self.sums.size - 1)
         end = min(max(int(last / self.step) + 1, begin), self.sums.size - 1)
         return float(self.sums[end] - self.sums[begin]) * self.step
+
+
+def rough_along(profile: Profile, path: int) -> Rough | None:
+    """Tell what is in the short waves of a path; None where stations are uneven, or too many."""
+    step, count = profile.even_step(), profile.stations.size
+    if step is None or not profile.remembers or count <= HIGH_PASS.order:
+        return None
+    return recalled(profile, f"roughness of path {path}", lambda: Rough.of(profile.along(path), step))
+
+
+def shortest_wave(profile: Profile, share: float) -> float | None:
+    """Find how short the waves of a profile are.
+
+    Parameters
+    ----------
+    profile : Profile
+        The road.
+    share : float
+        What may be in shorter waves, root mean square, relative to the elevation.
+
+    Returns
+    -------
+    float or None
+        Length [m]; None where stations are uneven or too many, or where waves are as short as stations can tell.
+    """
+
+    def found() -> tuple[float | None]:
+        paths = range(1 if profile.same_across else profile.paths)
+        length = float(profile.stations[-1] - profile.stations[0])
+        rough = [each for path in paths if (each := rough_along(profile, path))]
+        if len(rough) < len(paths):
+            return (None,)
+        energy = np.array([each.over(0.0, length) for each in rough])
+        whole = max(each.variance for each in rough) * length
+        samples = ShortWaves(energy, whole).shortest(share)
+        return (None if samples is None else samples * rough[0].step,)
+
+    return recalled(profile, f"shortest wave, {share}", found)[0] if profile.remembers else None
 
 
 class Past(NamedTuple):
@@ -142,10 +180,7 @@ class Along(NamedTuple):
     @classmethod
     def of(cls, profile: Profile, path: int, datum_at: float, grade: float) -> Along:
         """Prepare one path of a profile."""
-        spline, step = profile.along(path), profile.even_step()
-        rough = None
-        if step is not None and profile.remembers and spline.x.size > HIGH_PASS.order:
-            rough = recalled(profile, f"roughness of path {path}", lambda: Rough.of(spline, step))
+        spline, step, rough = profile.along(path), profile.even_step(), rough_along(profile, path)
         if grade:
             past = Past.of(spline, grade, even=step is not None)
         else:

@@ -14,7 +14,7 @@ from movingfrf._basics.welch import welch
 from movingfrf.guideways.guideway import findings_of
 from movingfrf.response.batches import unthreaded
 from movingfrf.response.line import TRANSFORM, Line
-from movingfrf.response.simulation import excitation_of, line_of
+from movingfrf.response.ride import excitation_of, line_of
 from movingfrf.response.survey import survey
 from movingfrf.response.system import System
 from movingfrf.results.findings import graded, near_critical, one_path

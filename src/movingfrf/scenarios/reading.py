@@ -11,7 +11,7 @@ from movingfrf._basics.checks import Fault, ParameterError, checking, nearest, s
 from movingfrf._basics.toml_file import tables_of, text_of
 from movingfrf.guideways.sampled import SampledGuideway
 from movingfrf.response.line import Line, require_record
-from movingfrf.response.simulation import line_of
+from movingfrf.response.ride import line_of
 from movingfrf.roughness.excitation import require_cover
 from movingfrf.scenarios.kind import Family, Key, Kind
 from movingfrf.scenarios.kinds import DRIVE, PASSAGE, TABLES, VEHICLE

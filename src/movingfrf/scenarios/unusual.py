@@ -9,6 +9,7 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import Finding
+from movingfrf._basics.remembered import recalled
 from movingfrf._basics.wording import in_both_units, number
 from movingfrf.guideways.foundations import OnMass, ShearLayer, Spring
 from movingfrf.guideways.relaxing import RelaxingSpring
@@ -103,9 +104,9 @@ def unusual(
     """
     found = [*_of_journey(guideway, journey, vehicle), *_of_guideway(guideway)]
     if vehicle is not None:
-        found += [*_of_sag(guideway, vehicle), *_of_vehicle(vehicle)]
+        found += [*_of_sag(guideway, vehicle), *recalled(vehicle, "unusual", lambda: tuple(_of_vehicle(vehicle)))]
     if profile is not None:
-        found += _of_profile(profile)
+        found += recalled(profile, "unusual", lambda: tuple(_of_profile(profile)))
     if forces is not None:
         most = float(np.abs(forces).max(initial=0.0))
         found += _outside("the largest prescribed force", most, USUAL.force, "N", "is it in N?")
@@ -114,7 +115,7 @@ def unusual(
 
 def unusual_vehicle(vehicle: Vehicle) -> list[str]:
     """Say what of a vehicle alone lies outside what is usual, in sentences."""
-    return list(_of_vehicle(vehicle))
+    return list(recalled(vehicle, "unusual", lambda: tuple(_of_vehicle(vehicle))))
 
 
 def _outside(what: str, value: float, usual: Range, unit: str, hint: str = "") -> Iterator[str]:
@@ -143,8 +144,7 @@ def _of_journey(guideway: object, journey: Journey, vehicle: Vehicle | None) -> 
         )
     words, usual = "the speed", USUAL.rail_speed
     if vehicle is not None and not vehicle.on_rails:
-        _, axle = np.unique(vehicle.positions.round(2), return_inverse=True)
-        heaviest = float(np.bincount(axle, vehicle.static_loads).max())
+        heaviest = recalled(vehicle, "heaviest axle", lambda: _heaviest_axle(vehicle))
         usual = USUAL.road_speed
         if heaviest > USUAL.truck_axle:
             words, usual = f"the speed of a truck with {number(heaviest / 1e3, 3)} kN on an axle", USUAL.truck_speed
@@ -152,6 +152,12 @@ def _of_journey(guideway: object, journey: Journey, vehicle: Vehicle | None) -> 
     yield from _outside(words, journey.speed, usual, "m/s", f"it is {in_kmh}; `speed_kmh` takes km/h")
     yield from _outside("the step in time", journey.time_step, USUAL.step, "s", "is it in s?")
     yield from _outside("the duration", journey.duration, USUAL.duration, "s", "is it in s?")
+
+
+def _heaviest_axle(vehicle: Vehicle) -> float:
+    """Give the static load of contacts that stand abreast, where it is largest [N]."""
+    _, axle = np.unique(vehicle.positions.round(2), return_inverse=True)
+    return float(np.bincount(axle, vehicle.static_loads).max())
 
 
 def _of_guideway(guideway: object) -> Iterator[str]:

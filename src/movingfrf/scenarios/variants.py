@@ -257,13 +257,15 @@ class Variants:
         self._known = Known()
         self._sections: dict[tuple[str, str], Any] = {}
 
-    def at(self, values: Mapping[str, Any]) -> Scenario:
+    def at(self, values: Mapping[str, Any], *, told: bool = True) -> Scenario:
         """Take some values.
 
         Parameters
         ----------
         values : mapping of str to object
             By the path of the key: `vehicle.tyre_stiffness.0`, or a whole table.
+        told : bool
+            Whether the scenario has a text.
 
         Returns
         -------
@@ -282,8 +284,9 @@ class Variants:
             names = path.split(".")
             there = self._section(path, value) if len(names) == 1 and isinstance(value, str) else value
             tables = changed(tables, names, there)
+        text = as_toml(tables) if told else ""
         return scenario_of(
-            tables, name=self.name, source=self.name, folder=self.folder, text=as_toml(tables), known=self._known
+            tables, name=self.name, source=self.name, folder=self.folder, text=text, known=self._known
         )
 
     def _section(self, name: str, value: str) -> Any:

@@ -8,7 +8,7 @@ import numpy as np
 
 from movingfrf._basics.wording import number
 from movingfrf.reports.tables import Column
-from movingfrf.response.simulation import line_of
+from movingfrf.response.ride import line_of
 from movingfrf.response.truncation import Truncation
 from movingfrf.scenarios.scenario import drive_of
 from movingfrf.scenarios.stepped import elements

@@ -155,6 +155,7 @@ def as_bytes(solved: Solved) -> bytes:
         arrays[f"{name}.sizes"] = np.array([values.size for values in each])
         arrays[name] = np.concatenate([np.zeros(0), *each])
     told = json.dumps([solved.contacts, solved.dofs, solved.units, solved.status, solved.findings])
+    arrays["steps"] = np.array(solved.steps)
     buffer = io.BytesIO()
     np.savez(buffer, **arrays, told=np.frombuffer(told.encode(), np.uint8))  # type: ignore[arg-type]
     return buffer.getvalue()
@@ -171,11 +172,12 @@ def of_file(file: Path) -> Solved:
     try:
         with np.load(io.BytesIO(file.read_bytes())) as arrays:
             told = json.loads(arrays["told"].tobytes())
-            names = [name for name in arrays.files if name != "told" and not name.endswith(".sizes")]
+            names = [name for name in arrays.files if name not in ("told", "steps") and not name.endswith(".sizes")]
+            steps = arrays["steps"].tolist()
             values = {
                 name: np.split(arrays[name], np.cumsum(arrays[f"{name}.sizes"])[:-1].astype(int)) for name in names
             }
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile):
         raise ValueError(f"{file}: is damaged; remove it, and it is computed again") from None
     contacts, dofs, units = ([tuple(names) for names in part] for part in told[:3])
-    return Solved(values, contacts, dofs, units, told[3], told[4])
+    return Solved(values, contacts, dofs, units, told[3], told[4], steps)

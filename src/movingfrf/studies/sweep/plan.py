@@ -36,6 +36,8 @@ class Plan:
         What is asked of each case.
     response : str
         How each case is solved: `simulate` or `random`.
+    stated : bool
+        Whether cases are solved in the scenario's steps in time, or in those that each needs.
     design : dict
         How samples were drawn, where the axis is one of samples.
     files : dict of str to str
@@ -48,6 +50,7 @@ class Plan:
     axes: Axes
     measures: tuple[str, ...]
     response: str = "simulate"
+    stated: bool = False
     design: dict[str, Any] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
 
@@ -62,6 +65,7 @@ class Plan:
             "axes": self.axes.told,
             "measures": list(self.measures),
             "response": self.response,
+            "stated": self.stated,
             "design": self.design,
             "files": self.files,
         }
@@ -82,6 +86,7 @@ class Plan:
             axes=Axes.of_told(told["axes"]),
             measures=tuple(told["measures"]),
             response=told["response"],
+            stated=told["stated"],
             design=told["design"],
             files=told["files"],
         )
@@ -137,7 +142,7 @@ def plan_of(
     response : str
         `simulate` or `random`.
     time_step : float, optional
-        Step in place of the scenario's [s].
+        Step in place of the scenario's [s]; None: found for each case, unless it varies.
 
     Returns
     -------
@@ -169,6 +174,7 @@ def plan_of(
         axes=spanned,
         measures=tuple(dict.fromkeys(asked)),
         response=response,
+        stated=time_step is not None or "run.time_step" in spanned.paths,
         design=axes.drawn if isinstance(axes, Design) else {},
         # What they hold is part of the sweep: cases of another content do not go together.
         files=contents([tables, *(axis.values for axis in spanned)], folder),

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
-import warnings
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
-from movingfrf._basics.checks import SolveError, ValidityWarning
+from movingfrf._basics.checks import SolveError
 from movingfrf._basics.compiling import compiling, numba_is_there
+from movingfrf.response.batches import unthreaded
 from movingfrf.scenarios.scenario import Drive
 from movingfrf.scenarios.variants import Variants
 from movingfrf.studies.sweep.plan import Plan
@@ -26,8 +25,10 @@ class Solved(NamedTuple):
     units: list[tuple[str, ...]]  # of the degrees of freedom
     status: list[str]  # why a case has no answer; empty where it has
     findings: list[str]  # codes of what is to be known about a case
+    steps: list[float]  # steps in time of what was measured [s]
 
 
+@unthreaded
 def solved(
     plan: Plan, variants: Variants, first: int, last: int, each: Callable[[int], None] = lambda done: None
 ) -> Solved:
@@ -49,7 +50,7 @@ def solved(
     Solved
         The cases in this order.
     """
-    found = Solved({name: [] for name in plan.measures}, [], [], [], [], [])
+    found = Solved({name: [] for name in plan.measures}, [], [], [], [], [], [])
     # Compiled or not, from the first case to the last: which of them a process solves changes no digit.
     with compiling(numba_is_there()):
         for done, places in enumerate(plan.axes.numbers(first, last)):
@@ -63,25 +64,22 @@ def _add(found: Solved, plan: Plan, variants: Variants, values: dict[str, object
     contacts: tuple[str, ...] = ()
     dofs: tuple[str, ...] = ()
     units: tuple[str, ...] = ()
-    findings, status = "", ""
+    findings, status, step = "", "", np.nan
     measured: dict[str, FloatArray] = dict.fromkeys(plan.measures, np.zeros(0))
     try:
-        scenario = variants.at(values)
+        scenario = variants.at(values, told=False)
         case = scenario.case
         if not isinstance(case, Drive):
             raise ValueError("prescribed loads are not swept")
-        contacts = tuple(contact.name for contact in case.vehicle.contacts)
-        with warnings.catch_warnings():
-            # They are told of each case.
-            warnings.simplefilter("ignore", ValidityWarning)
-            result = plan.way.solve(scenario)
-            told = [*json.loads(result.attrs["findings"])]
-        dofs, units = (tuple(map(str, result[name].values)) for name in ("dof", "dof_unit"))
-        findings = ", ".join(dict.fromkeys(str(one["code"]) for one in told))
-        measured = plan.way.taken(result, plan.measures)
+        vehicle = case.vehicle
+        contacts, dofs = tuple(contact.name for contact in vehicle.contacts), tuple(vehicle.dof_names)
+        units = tuple(np.asarray(vehicle.coordinates["dof_unit"]).tolist())
+        answer = plan.way.solve(scenario, case, plan.stated)
+        findings, step = ", ".join(dict.fromkeys(answer.findings)), answer.time_step
+        measured = answer.measured(plan.measures)
     except (ValueError, SolveError) as refused:
         status = "; ".join(line.strip() for line in str(refused).splitlines())
     for name in plan.measures:
         found.values[name].append(measured[name])
-    for where, what in zip(found[1:], (contacts, dofs, units, status, findings), strict=True):
+    for where, what in zip(found[1:], (contacts, dofs, units, status, findings, step), strict=True):
         where.append(what)  # type: ignore[attr-defined]

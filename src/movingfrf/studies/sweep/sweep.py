@@ -58,7 +58,9 @@ def sweep(
     response : str
         `simulate`, or `random`: the response to all roads of a spectrum, as `random_response` computes it.
     time_step : float, optional
-        Step in time in place of the scenario's [s].
+        Step in time in place of the scenario's [s]. None: as fine as the shortest waves of each case's road need,
+        found and recorded, and the scenario's where they cannot be told; what the road shows is in it either way,
+        and peaks are found between samples too.
     workers : int
         Processes, each on one thread.
     store : str or Path, optional
@@ -70,7 +72,7 @@ def sweep(
     -------
     xarray.Dataset
         Measures over the axes, then contacts or degrees of freedom; `status` says why a case has no answer and is
-        empty where it has, `findings` what is to be known of it.
+        empty where it has, `findings` what is to be known of it, `time_step` in what steps it was solved.
 
     Raises
     ------
@@ -214,6 +216,9 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
         values = [value for chunk in chunks for value in chunk.values[name]]
         made = laid(values, np.full((cases, widths[usual.place]), np.nan))
         variables[name] = ((*dims, usual.place), made, {"units": usual.units, "long_name": usual.words})
+    if plan.response == "simulate":
+        steps = laid(each("steps"), np.full(cases, np.nan))
+        variables["time_step"] = (dims, steps, {"units": "s", "long_name": "step in time of what was measured"})
     for name, said in (("status", "why the case has no answer"), ("findings", "what is to be known of the case")):
         variables[name] = (dims, laid(each(name), np.full(cases, "", object)), {"long_name": said})
     settings = attributes(
