@@ -129,9 +129,9 @@ def placed(kind: Kind) -> Kind:
     def make(*, way: Way, length: float | None = None, origin: float | None = None, **given: Any) -> Road:
         with checking() as check:
             if length is not None:
-                check.positive("length", length, "m")
+                length = check.positive("length", length, "m")
             if origin is not None:
-                check.finite("origin", origin, "m")
+                origin = check.finite("origin", origin, "m")
                 if length is None:
                     check.refuse("origin", "is of use only with `length`: without, the road is that of the journey")
         road: Road = kind.make(where=way.realised(length, origin), **given)
