@@ -293,9 +293,12 @@ def test_what_is_left_to_the_class_has_no_default_of_its_own():
 
 
 def test_keys_are_the_keywords_of_python():
-    """All but the length and the start, which follow from the journey."""
+    """All but the length and the start, which follow from the journey; of realised roads they may be said."""
     for kind in ROADS:
-        assert not {"length", "start", "covering", "way", "given"} & {key.name for key in kind.keys}, kind.name
+        keys = {key.name for key in kind.keys}
+        assert not {"start", "covering", "way", "where", "given"} & keys, kind.name
+        of_its_own = {"length", "origin"} if kind.name in {*SPECTRUM_KINDS, "laplace_road"} else set()
+        assert {"length", "origin"} & keys == of_its_own, kind.name
 
 
 @pytest.mark.parametrize("kind", ["german_track", "iso_road"])

@@ -21,6 +21,12 @@ from numpy.typing import ArrayLike
 from movingfrf._basics.checks import shown
 from movingfrf._basics.documented import documented
 
+
+def all_given(table: Mapping[str, Any], **given: Any) -> Mapping[str, Any]:
+    """Say that what a table makes depends on all that is given beside it."""
+    return given
+
+
 # Default of a key that has none.
 NEEDED = inspect.Parameter.empty
 
@@ -102,8 +108,9 @@ class Kind:
         What it is, in a sentence.
     either : tuple of str
         Keys of which one is needed, and only one.
-    stays : bool
-        Whether its keys alone say what it is, whatever else it is given: the way of the journey, of a road.
+    beside : callable
+        Says, of a table and of what is given beside it (of a road, the way of the journey), what of the latter it
+        depends on: where that is the same, equal tables make the same.
     """
 
     name: str
@@ -111,7 +118,7 @@ class Kind:
     keys: tuple[Key, ...]
     words: str = ""
     either: tuple[str, ...] = ()
-    stays: bool = False
+    beside: Callable[..., Mapping[str, Any]] = all_given
 
     @classmethod
     def of(cls, target: Callable[..., Any], *, name: str | None = None, without: Sequence[str] = ()) -> Kind:

@@ -55,7 +55,7 @@ PROFILE = Kind(
         {key.name: key for key in (*keys_of(read_profile), *keys_of(prepared, without=["profile"]))}.values()
     ),
     words="A measured profile, read from a file.",
-    stays=True,
+    beside=lambda table, **given: {},  # what the file says
 )
 
 BEAM = family("beam", Beam, EulerBernoulliBeam, TimoshenkoBeam, TensionedBeam)

@@ -123,7 +123,7 @@ class Known:
     def taken(self, name: str, asked: tuple[Any, ...], make: Callable[[], Any]) -> Any:
         """Take what was made of this, or make it; what could not be made (None) is not kept."""
         # Roads may be long. [1 to 1000: memory and time only]
-        most = 4 if name == "roughness" else 64
+        most = 4 if name.startswith("roughness") else 64
         made = self._made.setdefault(name, {})
         if asked in made:
             return made[asked]
@@ -178,6 +178,28 @@ def scenario_of(
     if builder.faults or scenario is None:
         raise ScenarioError(source, builder.faults)
     return scenario
+
+
+def way_of(tables: Mapping[str, Any], folder: Path, known: Known | None = None) -> Way | None:
+    """Find the way of a scenario's vehicle, whatever else is wrong with the scenario.
+
+    Parameters
+    ----------
+    tables : mapping
+        As TOML gives them.
+    folder : Path
+        Folder to which paths in them are relative.
+    known : Known, optional
+        What was made of other tables.
+
+    Returns
+    -------
+    Way or None
+        None: vehicle or journey is missing or refused.
+    """
+    builder = _Builder(folder, known)
+    vehicle, journey = (builder.section(tables, key, DRIVE[key]) for key in ("vehicle", "run"))
+    return None if vehicle is None or journey is None else Way.of(journey, vehicle)
 
 
 def _text(path: Path) -> str:
@@ -262,15 +284,20 @@ class _Builder:
         """Build one table of the file, if it is there; None, with the reasons in `faults`, if it is refused."""
         if key not in tables:
             return None
+        return self._taken(tables[key], family, key, **given)
+
+    def _taken(self, table: Any, family: Family, path: str, **given: Any) -> Any:
+        """Take what was made of an equal table and of what matters beside it, or build it."""
 
         def make() -> Any:
-            return self._built(tables[key], family, key, **given)
+            return self._built(table, family, path, **given)
 
         if self.known is None:
             return make()
-        kind = tables[key].get("kind") if isinstance(tables[key], dict) else None
-        stays = isinstance(kind, str) and kind in family.kinds and family.kinds[kind].stays
-        return self.known.taken(key, (repr(tables[key]), *([] if stays else given.values())), make)
+        name = table.get("kind") if isinstance(table, dict) else None
+        kind = family.kinds.get(name) if isinstance(name, str) else None
+        beside = given if kind is None else kind.beside(table, **given)
+        return self.known.taken(path, (repr(table), repr(beside)), make)
 
     def _built(self, table: Any, family: Family, path: str, **given: Any) -> Any:
         """Build one table, or return None and leave the reasons in `faults`.
@@ -337,7 +364,9 @@ class _Builder:
             if not isinstance(value, list) or not value:
                 self.faults.append(Fault(path, f"must be one or more tables [[{path}]]"))
                 return None
-            return [self._built(table, TABLES[key.item], f"{path}[{n}]", **given) for n, table in enumerate(value)]
+            # Parts that are given something beside their tables are roads: dear.
+            build = self._taken if given else self._built
+            return [build(table, TABLES[key.item], f"{path}[{n}]", **given) for n, table in enumerate(value)]
         if key.is_file:
             if not isinstance(value, str) or "\0" in value:
                 self.faults.append(Fault(path, f"must be the name of a file, got {shown(value)}"))

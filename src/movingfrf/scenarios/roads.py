@@ -1,12 +1,12 @@
 """What a scenario's [roughness] can be: a spectrum realised, shapes on a level road, and combinations of these.
 
 Each kind is made from what Python offers, so that its keys are that function's keyword arguments; where the road
-begins and ends follows from the way that the journey takes.
+begins and ends follows from the way that the journey takes, unless a realised road says it itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -67,10 +67,27 @@ class Way(NamedTuple):
         last = end - journey.distance + journey.speed * journey.duration
         return cls(begin, last, (begin - reach, max(end, last) + reach + beyond))
 
-    @property
-    def realised(self) -> dict[str, Any]:
-        """Arguments that make a realised road: its own length, and where stations are needed."""
-        return {"length": self.last - self.first, "start": self.first, "covering": self.covering}
+    def realised(self, length: float | None = None, origin: float | None = None) -> dict[str, Any]:
+        """Arguments that make a realised road: its own length, where it begins, and where stations are needed.
+
+        Parameters
+        ----------
+        length : float, optional
+            Length of the road [m]: with it the road is the same at every speed and duration, and a journey that
+            leaves it is refused. None: that of the journey.
+        origin : float, optional
+            Where a road of stated `length` begins [m]: with it, it is the same for every start and vehicle as well.
+            None: where the hindmost contact starts.
+
+        Returns
+        -------
+        dict
+            As `realise` takes them.
+        """
+        start = self.first if origin is None else origin
+        if length is None:
+            return {"length": self.last - self.first, "start": start, "covering": self.covering}
+        return {"length": length, "start": start}
 
     @property
     def shaped(self) -> dict[str, Any]:
@@ -106,28 +123,87 @@ def by_class(spectrum: Any) -> Kind:
 REALISING = keys_of(realise, without=["spectrum", "length", "start", "covering"])
 
 
-def realised(spectrum: Kind) -> Kind:
-    """Realise a spectrum along the way: its own keys, then those of a realisation."""
+def placed(kind: Kind) -> Kind:
+    """Let a kind of realised road have a length and an origin of its own, in place of those of the way."""
 
-    def make(*, way: Way, **given: Any) -> Road:
+    def make(*, way: Way, length: float | None = None, origin: float | None = None, **given: Any) -> Road:
+        with checking() as check:
+            if length is not None:
+                length = check.positive("length", length, "m")
+            if origin is not None:
+                origin = check.finite("origin", origin, "m")
+                if length is None:
+                    check.refuse("origin", "is of use only with `length`: without, the road is that of the journey")
+        road: Road = kind.make(where=way.realised(length, origin), **given)
+        return road
+
+    keys = (*kind.keys, *keys_of(Way.realised, without=["self"]))
+    return replace(kind, make=make, keys=keys, beside=where)
+
+
+def where(table: Mapping[str, Any], *, way: Way) -> dict[str, Any]:
+    """Say where the realised road of a table lies: it is another road where this is another.
+
+    Parameters
+    ----------
+    table : mapping
+        What a scenario says of it.
+    way : Way
+        The way of the journey.
+
+    Returns
+    -------
+    dict
+        As `Way.realised` says it.
+    """
+    return way.realised(table.get("length"), table.get("origin"))
+
+
+def places(table: Mapping[str, Any], way: Way) -> list[Any]:
+    """Say where all realised roads of a table lie, those of its parts included.
+
+    Parameters
+    ----------
+    table : mapping
+        The table of a scenario.
+    way : Way
+        The way of the journey.
+
+    Returns
+    -------
+    list
+        Length and beginning of each [m]: where these differ, equal tables are different roads.
+    """
+    parts = table.get("parts")
+    if isinstance(parts, list):
+        return [place for part in parts if isinstance(part, dict) for place in places(part, way)]
+    kind = next((kind for kind in ROADS if kind.name == table.get("kind")), None)
+    lies = where(table, way=way) if kind is not None and kind.beside is where else None
+    return [] if lies is None else [(lies["length"], lies["start"])]
+
+
+def realised(spectrum: Kind) -> Kind:
+    """Realise a spectrum: its own keys, then those of a realisation."""
+
+    def make(*, where: Mapping[str, Any], **given: Any) -> Road:
         made = spectrum.make(**chosen(given, spectrum.keys))
         how = {key.name: given.get(key.name, key.default) for key in REALISING}
-        profile = realise(made, **how, **way.realised)
+        profile = realise(made, **how, **where)
         common = in_common(made, how["seed"], how["across"], how["coherence"])
         return Road(profile, profile.source, made, common)
 
-    return replace(spectrum, make=make, keys=(*spectrum.keys, *REALISING))
+    return placed(replace(spectrum, make=make, keys=(*spectrum.keys, *REALISING)))
 
 
-def laplace_road(*, way: Way, **given: Any) -> Road:
-    """Realise a road that is not Gaussian along the way.
+def laplace_road(*, where: Mapping[str, Any], **given: Any) -> Road:
+    """Realise a road that is not Gaussian.
 
     It does not carry its spectrum: random vibration in closed form would take it for a Gaussian one.
 
     Parameters
     ----------
-    way : Way
-        Where the road is needed.
+    where : mapping
+        Where it lies, as `Way.realised` says it.
     **given : object
         Further arguments of `realise_laplace`.
 
@@ -136,7 +212,7 @@ def laplace_road(*, way: Way, **given: Any) -> Road:
     Road
         The road.
     """
-    profile = realise_laplace(**given, **way.realised)
+    profile = realise_laplace(**given, **where)
     return Road(profile, profile.source)
 
 
@@ -205,8 +281,11 @@ SPECTRA = (
 # Kinds of roads.
 ROADS = (
     *map(realised, SPECTRA),
-    replace(
-        Kind.of(realise_laplace, name="laplace_road", without=["length", "start", "covering"]), make=laplace_road
+    placed(
+        replace(
+            Kind.of(realise_laplace, name="laplace_road", without=["length", "start", "covering"]),
+            make=laplace_road,
+        )
     ),
     shaped(irregularities.harmonic),
     shaped(irregularities.bump),

@@ -13,7 +13,8 @@ import numpy as np
 from movingfrf._basics.checks import nearest
 from movingfrf._basics.toml_file import as_toml, tables_of, text_of
 from movingfrf.scenarios.kinds import DRIVE, PASSAGE, TABLES
-from movingfrf.scenarios.reading import Known, scenario_of
+from movingfrf.scenarios.reading import Known, scenario_of, way_of
+from movingfrf.scenarios.roads import places
 from movingfrf.scenarios.scenario import Scenario
 
 Tables = Mapping[str, Any]
@@ -255,7 +256,6 @@ class Variants:
     def __init__(self, tables: dict[str, Any], folder: Path, name: str) -> None:
         self.tables, self.folder, self.name = tables, folder, name
         self._known = Known()
-        self._sections: dict[tuple[str, str], Any] = {}
 
     def at(self, values: Mapping[str, Any], *, told: bool = True) -> Scenario:
         """Take some values.
@@ -279,18 +279,30 @@ class Variants:
         ValueError
             If a path leads nowhere.
         """
-        tables: Any = self.tables
-        for path, value in values.items():
-            names = path.split(".")
-            there = self._section(path, value) if len(names) == 1 and isinstance(value, str) else value
-            tables = changed(tables, names, there)
+        tables = self.tables_at(values)
         text = as_toml(tables) if told else ""
         return scenario_of(
             tables, name=self.name, source=self.name, folder=self.folder, text=text, known=self._known
         )
 
+    def tables_at(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """Give the tables with some values, as `at` takes them, unchecked."""
+        tables: Any = self.tables
+        for path, value in values.items():
+            names = path.split(".")
+            there = self._section(path, value) if len(names) == 1 and isinstance(value, str) else value
+            tables = changed(tables, names, there)
+        found: dict[str, Any] = tables
+        return found
+
+    def roads_at(self, values: Mapping[str, Any]) -> list[Any]:
+        """Say where all realised roads lie, as `places` does, with some values; none where there is no such way."""
+        with suppress(ValueError):  # whoever solves the case says what is wrong
+            tables = self.tables_at(values)
+            way, road = way_of(tables, self.folder, self._known), tables.get("roughness")
+            return [] if way is None or not isinstance(road, dict) else places(road, way)
+        return []
+
     def _section(self, name: str, value: str) -> Any:
-        """Read what stands for a whole table, once."""
-        if (name, value) not in self._sections:
-            self._sections[name, value] = section_in(name, value, self.folder)
-        return self._sections[name, value]
+        """Read what stands for a whole table, once as long as it is among the latest."""
+        return self._known.taken("whole", (name, value), lambda: section_in(name, value, self.folder))

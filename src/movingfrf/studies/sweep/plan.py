@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from movingfrf._basics.checks import Finding, checking
+from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf._basics.version import VERSION
-from movingfrf.scenarios.kinds import ROUGHNESS
 from movingfrf.scenarios.scenario import Drive, Scenario
 from movingfrf.scenarios.variants import Variants, contents, tables_in
 from movingfrf.studies.sweep.axes import Axes, axes_of
@@ -19,7 +19,7 @@ from movingfrf.studies.sweep.ways import Way, ways
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Plan:
+class Plan(Remembering):
     """A sweep before anything of it is computed.
 
     Parameters
@@ -94,21 +94,44 @@ class Plan:
     @property
     def findings(self) -> list[Finding]:
         """What is to be known about the sweep as a whole."""
-        table = self.tables.get("roughness", {})
-        kind = ROUGHNESS.kinds.get(str(table.get("kind"))) if isinstance(table, dict) else None
-        realised = kind is not None and any(key.name == "seed" for key in kind.keys)
-        ways = [f"run.{key}" for key in ("speed", "speed_kmh", "duration", "start")]
-        varied = [path for path in self.axes.paths if path in ways]
-        if not (realised and varied) or self.response == "random":
+        if self.response == "random":
             return []
+        number = next((number for number in range(len(self.axes)) if self._other_roads(number)), None)
+        if number is None:
+            return []
+        varied = next(path for path in self.axes[number].paths if _moving(path))
         return [
             Finding(
                 "other_roads",
-                f"a realised road is as long as its journey: for another {self.axes.names[varied[0]]} it is "
-                "another road of the same spectrum, and differences between cases are theirs as well; a profile "
-                "from a file is the same for all",
+                "a realised road follows its journey unless `length` and `origin` [m] in [roughness] say where it "
+                f"lies: for another {self.axes.names[varied]} it is another road of the same spectrum, and "
+                "differences between cases are the roads' as well; a profile from a file is the same for all",
             )
         ]
+
+    def _other_roads(self, number: int) -> bool:
+        """Whether realised roads lie elsewhere, or are longer, at other places along an axis."""
+        if not any(map(_moving, self.axes[number].paths)):
+            return False
+
+        def some(axis: int) -> list[int]:
+            """Give places along an axis that tell of all: the first few and the last [2 to 1000: time only]."""
+            size = self.axes[axis].size
+            return [*range(min(size, 16)), size - 1]
+
+        # What the road is may vary along another axis.
+        whole = next((axis for axis, one in enumerate(self.axes) if "roughness" in one.paths), number)
+        variants = self.variants
+        for kind in some(whole):
+            start = [kind if axis == whole else 0 for axis in range(len(self.axes))]
+            lie = [
+                variants.roads_at(self.axes.values([*start[:number], place, *start[number + 1 :]]))
+                for place in some(number)
+            ]
+            there = [one for one in lie if one]
+            if any(one != there[0] for one in there):
+                return True
+        return False
 
     @property
     def way(self) -> Way:
@@ -116,8 +139,9 @@ class Plan:
         return ways()[self.response]
 
     @property
+    @remembered
     def variants(self) -> Variants:
-        """Its scenarios."""
+        """Its scenarios, which remember what they made from the first look on."""
         return Variants(self.tables, self.folder, self.name)
 
 
@@ -182,6 +206,11 @@ def plan_of(
     if not isinstance(_first(found).case, Drive):
         raise ValueError(f"{name}: prescribed loads are not swept; a vehicle and a road are needed")
     return found
+
+
+def _moving(path: str) -> bool:
+    """Whether a key says how something travels, or what does."""
+    return path.split(".")[0] in ("run", "vehicle")
 
 
 def _first(plan: Plan) -> Scenario:
