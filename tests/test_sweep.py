@@ -192,6 +192,35 @@ def test_steps_that_do_not_show_all_of_it(truck):
     assert (np.abs(table.contact_force_rms.values[0] - coarse) > 1e-3 * coarse).all()
 
 
+def test_histories(truck, tmp_path):
+    """As `simulate` has them, in memory and from a folder; what a vehicle or a case lacks is nan."""
+    axes = {"run.speed": [9.0, -1.0], "vehicle": ["half_truck", "golden_car"]}
+    table = mf.sweep(truck, axes, histories=True)
+    result = alone(truck, {"run.speed": 9.0, "vehicle": {"kind": "catalogue", "name": "golden_car"}})
+    for name in ("contact_force", "deflection", "motion", "acceleration", "roughness"):
+        width = result[name].shape[1]
+        found = table[name].values[0, 1]
+        np.testing.assert_array_equal(found[:, :width], result[name])
+        assert np.isnan(found[:, width:]).all()
+        assert np.isnan(table[name].values[1]).all()
+        assert table[name].dims[-2:] == result[name].dims
+    np.testing.assert_array_equal(table.time, result.time)
+    assert table.identical(mf.sweep(truck, axes, histories=True, store=tmp_path / "kept"))
+
+
+@pytest.mark.parametrize(
+    ("axes", "asked", "words"),
+    [
+        ({"run.speed": np.linspace(8.0, 12.0, 10**6)}, {}, r"histories of 1000000 cases needs about \d+ GiB"),
+        ({"run.time_step": [1e-3, 2e-3]}, {}, r"run\.time_step must not vary"),
+        ({"run.speed": [9.0]}, {"response": "random"}, r"histories are those of response=\"simulate\""),
+    ],
+)
+def test_histories_that_cannot_be(axes, asked, words, truck):
+    with pytest.raises(ValueError, match=words):
+        mf.sweep(truck, axes, histories=True, **asked)
+
+
 GRID = {"run.speed": [9.0, 10.0, 11.0], "vehicle.tyre_stiffness.0": [3e6, 4e6], "roughness.seed": [0, 1]}
 
 

@@ -102,24 +102,6 @@ def statistics() -> dict[str, Usual]:
     }
 
 
-def statistics_of(result: xr.Dataset, names: Iterable[str]) -> dict[str, FloatArray]:
-    """Take statistics of a random response.
-
-    Parameters
-    ----------
-    result : xarray.Dataset
-        What `random_response` returned.
-    names : iterable of str
-        Keys of `statistics()`.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (contact,) or (dof,)
-        As the result has them.
-    """
-    return {name: result[name].values for name in names}
-
-
 def usual_of(history: History, names: Iterable[str]) -> dict[str, FloatArray]:
     """Take usual measures of every contact and degree of freedom.
 

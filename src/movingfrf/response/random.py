@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,7 +29,7 @@ from movingfrf.response.batches import BATCH, unthreaded
 from movingfrf.response.quadrature import Lines, Unresolved, resolved
 from movingfrf.response.solve import solve
 from movingfrf.response.statistics import lift_off, lifting_off, peak_factor, spectral_rate
-from movingfrf.response.survey import survey
+from movingfrf.response.survey import Survey, survey
 from movingfrf.response.system import System
 from movingfrf.response.transfer import coordinates
 from movingfrf.results.findings import Finding
@@ -188,43 +188,25 @@ def random_response(
     with checking() as check:
         speed = check.positive("speed", speed, "m/s")
         exposure = check.positive("exposure", exposure, "s")
-        shared = _checked_coherence(check, coherence, len(set(vehicle.paths)))
+        shared = checked_coherence(check, coherence, len(set(vehicle.paths)))
         wanted = None if frequency is None else check.array("frequency", frequency, "Hz", (None,))
         if wanted is not None and not check.faults and not (wanted.size and wanted.min() >= 0):
             least = f"{wanted.min():g} Hz" if wanted.size else "none"
             check.refuse("frequency", f"must hold frequencies of at least zero [Hz], got {least}")
-    system = System.of(guideway, vehicle, speed)
-    progress("steady state", 0.0)
-    surveyed = survey(system)
-    steady = surveyed.steady
-    densities = _densities(system, _Ensemble(vehicle=vehicle, spectrum=spectrum, coherence=shared, speed=speed))
-    progress("spectral densities", 0.0)
-    lines = _resolved(densities, vehicle, _edges(spectrum, speed))
-    statistics = _statistics(vehicle, lines, exposure)
-    force_rms, crossing = statistics["contact_force_rms"], statistics["contact_force_crossing_rate"]
-    lift_off_share, lift_off_rate = lift_off(steady.load, force_rms, crossing)
-    found = [
-        *lifting_off(lift_off_share, lift_off_rate, exposure, vehicle.standing),
-        *surveyed.findings,
-        *_at_the_end(lines, vehicle, spectrum),
-    ]
+    found = stationary(
+        guideway, vehicle, spectrum, speed=speed, coherence=shared, exposure=exposure, progress=progress
+    )
     if wanted is None:
+        lines = found.lines
         axis: dict[str, ArrayLike] = {**coordinates(vehicle, lines.frequency), "bandwidth": lines.bandwidth}
         shown = lines.density
     else:
         require_memory(BATCH.bytes_per_value * wanted.size * _outputs(vehicle), f"{wanted.size} frequencies")
-        axis, shown = coordinates(vehicle, wanted), densities(wanted)
+        axis, shown = coordinates(vehicle, wanted), found.densities(wanted)
     values: dict[str, ArrayLike] = {
         **axis,
-        "static_load": steady.load.copy(),
-        "static_deflection": steady.deflection.copy(),
         **{f"{name}_density": shown[:, part] for name, part in _parts(vehicle).items()},
-        **statistics,
-        "dynamic_load_coefficient": load_coefficient(force_rms, steady.load),
-        "lift_off_share": lift_off_share,
-        "lift_off_rate": lift_off_rate,
-        # What does not move but for rounding is not felt either.
-        "weighted_acceleration": np.where(statistics["acceleration_rms"] > 0, _weighted(vehicle, lines), 0.0),
+        **found.statistics,
     }
     settings = attributes(
         "random",
@@ -235,17 +217,82 @@ def random_response(
         coherence=repr(shared) if coherence is not None else "one path",
         lowest_frequency=spectrum.band[0] * speed,
         highest_frequency=spectrum.band[1] * speed,
-        frequencies=lines.frequency.size,
+        frequencies=found.lines.frequency.size,
         weightings=", ".join(f"{name} for accelerations in {unit}/s2" for unit, name in WEIGHTING_OF.items()),
-        critical_speed=surveyed.critical_speed,
+        critical_speed=found.surveyed.critical_speed,
         guideway=told(guideway),
-        findings=found,
+        findings=found.findings,
     )
     return labelled(values, settings)
 
 
-def _checked_coherence(check: Checks, coherence: Coherence | float | None, paths: int) -> Coherence | float:
-    """Coherence as a model or a float; anything will do for a single path."""
+class Stationary(NamedTuple):
+    """The response to a random road, before it has labels."""
+
+    surveyed: Survey
+    lines: Lines  # densities where the integrals need them
+    densities: Callable[[FloatArray], FloatArray]  # the same at any frequencies [Hz]
+    statistics: dict[str, FloatArray]  # by name, (contact,) or (dof,)
+    findings: list[Finding]
+
+
+def stationary(
+    guideway: Guideway,
+    vehicle: Vehicle,
+    spectrum: Spectrum,
+    *,
+    speed: float,
+    coherence: Coherence | float,
+    exposure: float = 600.0,
+    progress: Progress = silent,
+) -> Stationary:
+    """Compute the response to a random road: `random_response` without labels, for what has been checked.
+
+    Parameters
+    ----------
+    guideway, vehicle, spectrum, speed, coherence, exposure, progress
+        As for `random_response`.
+
+    Returns
+    -------
+    Stationary
+        Densities, statistics and findings.
+
+    Raises
+    ------
+    SolveError
+        If vehicle and guideway are unstable together, or a vibration without damping has no finite mean square.
+    """
+    system = System.of(guideway, vehicle, speed)
+    progress("steady state", 0.0)
+    surveyed = survey(system)
+    steady = surveyed.steady
+    densities = _densities(system, _Ensemble(vehicle=vehicle, spectrum=spectrum, coherence=coherence, speed=speed))
+    progress("spectral densities", 0.0)
+    lines = _resolved(densities, vehicle, _edges(spectrum, speed))
+    statistics = _statistics(vehicle, lines, exposure)
+    force_rms, crossing = statistics["contact_force_rms"], statistics["contact_force_crossing_rate"]
+    lift_off_share, lift_off_rate = lift_off(steady.load, force_rms, crossing)
+    all_of_them = {
+        "static_load": steady.load.copy(),
+        "static_deflection": steady.deflection.copy(),
+        **statistics,
+        "dynamic_load_coefficient": load_coefficient(force_rms, steady.load),
+        "lift_off_share": lift_off_share,
+        "lift_off_rate": lift_off_rate,
+        # What does not move but for rounding is not felt either.
+        "weighted_acceleration": np.where(statistics["acceleration_rms"] > 0, _weighted(vehicle, lines), 0.0),
+    }
+    found = [
+        *lifting_off(lift_off_share, lift_off_rate, exposure, vehicle.standing),
+        *surveyed.findings,
+        *_at_the_end(lines, vehicle, spectrum),
+    ]
+    return Stationary(surveyed, lines, densities, all_of_them, found)
+
+
+def checked_coherence(check: Checks, coherence: Coherence | float | None, paths: int) -> Coherence | float:
+    """Take a coherence as a model or a float; anything will do for a single path."""
     if coherence is None:
         if paths > 1:
             check.refuse(

@@ -20,6 +20,7 @@ from movingfrf.response.solve import solve
 from movingfrf.response.survey import SteadyState, Survey, survey
 from movingfrf.response.system import CoupledHistories, Response, System
 from movingfrf.response.truncation import Truncation
+from movingfrf.results.labels import turned
 from movingfrf.roughness.along import shortest_wave
 from movingfrf.roughness.excitation import Excitation, Touch, excite
 from movingfrf.roughness.profile import Profile
@@ -127,6 +128,14 @@ class Ride(Remembering):
             "motion": histories.motion.values[0],
             "acceleration": histories.acceleration.values[0],
         }
+
+    def turned(self, finer: int = 1) -> dict[str, FloatArray]:
+        """Give records in steps of the journey or finer ones as in a result, with what contacts see."""
+        journey, histories = self.journey, self.histories if finer == 1 else self.fine
+        seen = self.excitation.elevation(
+            journey.speed * (journey.time_step / finer) * np.arange(journey.samples * finer)
+        )
+        return {name: turned(values) for name, values in (*self.records(histories).items(), ("roughness", seen))}
 
     @property
     def findings(self) -> list[find.Finding]:

@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.remembered import latest
 from movingfrf.guideways.guideway import Guideway, require_guideway, told
 from movingfrf.response.batches import unthreaded
 from movingfrf.response.ride import ride
-from movingfrf.results.labels import Labels, attributes, turned
+from movingfrf.results.labels import Labels, attributes
 from movingfrf.roughness.profile import Profile, require_profile
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle, require_vehicle
@@ -150,16 +149,15 @@ def driven(
     found = ride(guideway, vehicle, profile, journey, progress=progress)
     excitation, steady, finer = found.excitation, found.steady, found.finer
     values = {
-        **_turned(found.records(found.histories), excitation.elevation(journey.travelled)),
+        **found.turned(),
         # What is remembered stays.
         "static_load": steady.load.copy(),
         "static_deflection": steady.deflection.copy(),
     }
     times = {"time": journey.times}
     if finer > 1:
-        times["solved_time"] = solved_times = journey.time_step / finer * np.arange(journey.samples * finer)
-        fine = _turned(found.records(found.fine), excitation.elevation(journey.speed * solved_times))
-        values |= {f"solved_{name}": value for name, value in fine.items()}
+        times["solved_time"] = journey.time_step / finer * np.arange(journey.samples * finer)
+        values |= {f"solved_{name}": value for name, value in found.turned(finer).items()}
     settings = attributes(
         "coupled",
         "Coupled response of a vehicle and a guideway",
@@ -181,8 +179,3 @@ def driven(
     if labels.ready:
         return labels.on(values, settings)
     return labels.made({**times, **vehicle.coordinates, **values}, settings)
-
-
-def _turned(records: dict[str, FloatArray], seen: FloatArray) -> dict[str, FloatArray]:
-    """Turn records to (time, place), with the elevation that contacts see."""
-    return {name: turned(values) for name, values in (*records.items(), ("roughness", seen))}

@@ -21,6 +21,7 @@ from movingfrf.response.simulation import driven
 from movingfrf.response.system import Prescribed
 from movingfrf.results.findings import one_path, with_more
 from movingfrf.roughness.road import Road
+from movingfrf.roughness.spectra.spectrum import Spectrum
 from movingfrf.scenarios.forces import Loads
 from movingfrf.scenarios.stepped import EXCHANGED, Division, coupled, elements, loaded, require_endless
 from movingfrf.scenarios.unusual import unusual
@@ -93,6 +94,23 @@ class Drive(Value):
     def unusual(self) -> list[Finding]:
         """What of it lies outside what is usual."""
         return unusual(self.guideway, self.journey, vehicle=self.vehicle, profile=self.road.profile)
+
+    @property
+    def spectrum(self) -> Spectrum:
+        """Spectrum of the road; refused where it has none."""
+        if self.road.spectrum is None:
+            raise ValueError(
+                f"the roughness has no spectrum ({self.road.description}): it is one road, not all of a kind. "
+                "`movingfrf run` computes the response to it. A random road needs a kind with a spectrum, such as "
+                "iso_road with the roughness and waviness that `movingfrf check` fits to a measured profile"
+            )
+        return self.road.spectrum
+
+    @property
+    def of_random_roads(self) -> list[Finding]:
+        """What is to be known about it where all roads of its spectrum are meant."""
+        alike = one_path(self.road.profile.one_path, self.vehicle.paths, self.vehicle.across)
+        return [*alike, *self.unusual]
 
     @property
     def places(self) -> FloatArray:
@@ -334,28 +352,18 @@ class Scenario(Value):
         """
         from movingfrf.response.random import random_response
 
-        drive = self.case
-        if not isinstance(drive, Drive):
-            raise ValueError("prescribed loads have no random road; a vehicle and a spectrum are needed")
-        guideway, road = require_endless(drive.guideway, instead="cdfm"), drive.road
-        if road.spectrum is None:
-            raise ValueError(
-                f"the roughness has no spectrum ({road.description}): it is one road, not all of a kind. "
-                "`movingfrf run` computes the response to it. A random road needs a kind with a spectrum, such as "
-                "iso_road with the roughness and waviness that `movingfrf check` fits to a measured profile"
-            )
+        drive = drive_of(self, "have no random road; a vehicle and a spectrum are needed")
         result = random_response(
-            guideway,
+            require_endless(drive.guideway, instead="cdfm"),
             drive.vehicle,
-            road.spectrum,
+            drive.spectrum,
             speed=drive.journey.speed,
-            coherence=road.coherence,
+            coherence=drive.road.coherence,
             exposure=exposure,
             frequency=frequency,
             progress=progress,
         )
-        alike = one_path(road.profile.one_path, drive.vehicle.paths, drive.vehicle.across)
-        findings = with_more(result.attrs["findings"], warned([*alike, *drive.unusual]))
+        findings = with_more(result.attrs["findings"], warned(drive.of_random_roads))
         return result.assign_attrs(scenario=self.text, findings=findings, **drive.journey.given_speed)
 
 
@@ -378,13 +386,15 @@ def shortened(scenario: Scenario, duration: float) -> Scenario:
     return replace(scenario, case=replace(scenario.case, journey=journey))
 
 
-def drive_of(scenario: Scenario) -> Drive:
+def drive_of(scenario: Scenario, otherwise: str = "") -> Drive:
     """Give the drive that a scenario says.
 
     Parameters
     ----------
     scenario : Scenario
         A scenario with a vehicle.
+    otherwise : str
+        What is said of prescribed loads.
 
     Returns
     -------
@@ -398,6 +408,8 @@ def drive_of(scenario: Scenario) -> Drive:
     """
     if isinstance(scenario.case, Drive):
         return scenario.case
+    if otherwise:
+        raise ValueError(f"prescribed loads {otherwise}")
     raise ValueError(f"{scenario.name}: a scenario with a vehicle is wanted, its loads are prescribed")
 
 

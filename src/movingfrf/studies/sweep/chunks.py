@@ -156,6 +156,8 @@ def as_bytes(solved: Solved) -> bytes:
         arrays[name] = np.concatenate([np.zeros(0), *each])
     told = json.dumps([solved.contacts, solved.dofs, solved.units, solved.status, solved.findings])
     arrays["steps"] = np.array(solved.steps)
+    for number, histories in enumerate(solved.histories):
+        arrays |= {f"{number}.{name}": values for name, values in histories.items()}
     buffer = io.BytesIO()
     np.savez(buffer, **arrays, told=np.frombuffer(told.encode(), np.uint8))  # type: ignore[arg-type]
     return buffer.getvalue()
@@ -172,12 +174,17 @@ def of_file(file: Path) -> Solved:
     try:
         with np.load(io.BytesIO(file.read_bytes())) as arrays:
             told = json.loads(arrays["told"].tobytes())
-            names = [name for name in arrays.files if name not in ("told", "steps") and not name.endswith(".sizes")]
+            names = [name.removesuffix(".sizes") for name in arrays.files if name.endswith(".sizes")]
             steps = arrays["steps"].tolist()
+            histories: list[dict[str, np.ndarray]] = [{} for _ in steps]
+            for name in arrays.files:
+                number, point, history = name.partition(".")
+                if number.isdecimal() and point:
+                    histories[int(number)][history] = arrays[name]
             values = {
                 name: np.split(arrays[name], np.cumsum(arrays[f"{name}.sizes"])[:-1].astype(int)) for name in names
             }
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile):
         raise ValueError(f"{file}: is damaged; remove it, and it is computed again") from None
     contacts, dofs, units = ([tuple(names) for names in part] for part in told[:3])
-    return Solved(values, contacts, dofs, units, told[3], told[4], steps)
+    return Solved(values, contacts, dofs, units, told[3], told[4], steps, histories)

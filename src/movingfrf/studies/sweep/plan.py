@@ -8,9 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from movingfrf._basics.arrays import require_memory
 from movingfrf._basics.checks import Finding, checking
 from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf._basics.version import VERSION
+from movingfrf._basics.wording import count
 from movingfrf.scenarios.scenario import Drive, Scenario
 from movingfrf.scenarios.variants import Variants, contents, tables_in
 from movingfrf.studies.sweep.axes import Axes, axes_of
@@ -38,6 +40,8 @@ class Plan(Remembering):
         How each case is solved: `simulate` or `random`.
     stated : bool
         Whether cases are solved in the scenario's steps in time, or in those that each needs.
+    histories : bool
+        Whether histories are kept beside measures.
     design : dict
         How samples were drawn, where the axis is one of samples.
     files : dict of str to str
@@ -51,6 +55,7 @@ class Plan(Remembering):
     measures: tuple[str, ...]
     response: str = "simulate"
     stated: bool = False
+    histories: bool = False
     design: dict[str, Any] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
 
@@ -66,6 +71,7 @@ class Plan(Remembering):
             "measures": list(self.measures),
             "response": self.response,
             "stated": self.stated,
+            "histories": self.histories,
             "design": self.design,
             "files": self.files,
         }
@@ -87,6 +93,7 @@ class Plan(Remembering):
             measures=tuple(told["measures"]),
             response=told["response"],
             stated=told["stated"],
+            histories=told["histories"],
             design=told["design"],
             files=told["files"],
         )
@@ -152,6 +159,7 @@ def plan_of(
     measures: Sequence[str] | None = None,
     response: str = "simulate",
     time_step: float | None = None,
+    histories: bool = False,
 ) -> Plan:
     """Check what is asked for before anything is computed.
 
@@ -166,7 +174,9 @@ def plan_of(
     response : str
         `simulate` or `random`.
     time_step : float, optional
-        Step in place of the scenario's [s]; None: found for each case, unless it varies.
+        Step in place of the scenario's [s]; None: found for each case, unless it varies or histories are kept.
+    histories : bool
+        Whether histories are kept.
 
     Returns
     -------
@@ -176,7 +186,8 @@ def plan_of(
     Raises
     ------
     ValueError
-        If a measure is unknown, an axis is none or none of its values suits the scenario, or that has no vehicle.
+        If a measure is unknown, an axis is none or none of its values suits the scenario, that has no vehicle, or
+        histories would not go together or not fit into memory.
     """
     with checking() as check:
         response = check.choice("response", response, ways())
@@ -187,7 +198,11 @@ def plan_of(
             check.refuse("measures", f"must be some of {', '.join(known)}, got none")
         if time_step is not None:
             time_step = check.positive("time_step", time_step, "s")
+        if histories and response != "simulate":
+            check.refuse("histories", 'are those of response="simulate"; the response to all roads has none')
     spanned = axes_of(axes)
+    if histories and "run.time_step" in spanned.paths:
+        raise ValueError("run.time_step must not vary where histories are kept: they have one axis of time")
     tables, folder, name = tables_in(scenario)
     if time_step is not None:
         tables = {**tables, "run": {**tables.get("run", {}), "time_step": time_step}}
@@ -198,13 +213,21 @@ def plan_of(
         axes=spanned,
         measures=tuple(dict.fromkeys(asked)),
         response=response,
-        stated=time_step is not None or "run.time_step" in spanned.paths,
+        stated=time_step is not None or histories or "run.time_step" in spanned.paths,
+        histories=histories,
         design=axes.drawn if isinstance(axes, Design) else {},
         # What they hold is part of the sweep: cases of another content do not go together.
         files=contents([tables, *(axis.values for axis in spanned)], folder),
     )
-    if not isinstance(_first(found).case, Drive):
+    first = _first(found).case
+    if not isinstance(first, Drive):
         raise ValueError(f"{name}: prescribed loads are not swept; a vehicle and a road are needed")
+    if histories:
+        # Forces, deflections and roughness of contacts; motions and accelerations of degrees of freedom.
+        channels = 3 * len(first.vehicle.contacts) + 2 * len(first.vehicle.dof_names)
+        require_memory(
+            8.0 * channels * first.journey.samples * spanned.cases, f"histories of {count(spanned.cases, 'case')}"
+        )
     return found
 
 

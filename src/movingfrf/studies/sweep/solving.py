@@ -26,6 +26,9 @@ class Solved(NamedTuple):
     status: list[str]  # why a case has no answer; empty where it has
     findings: list[str]  # codes of what is to be known about a case
     steps: list[float]  # steps in time of what was measured [s]
+    histories: list[
+        dict[str, FloatArray]
+    ]  # per case by name, (time, contact) or (time, dof); empty unless asked for
 
 
 @unthreaded
@@ -50,7 +53,7 @@ def solved(
     Solved
         The cases in this order.
     """
-    found = Solved({name: [] for name in plan.measures}, [], [], [], [], [], [])
+    found = Solved({name: [] for name in plan.measures}, [], [], [], [], [], [], [])
     # Compiled or not, from the first case to the last: which of them a process solves changes no digit.
     with compiling(numba_is_there()):
         for done, places in enumerate(plan.axes.numbers(first, last)):
@@ -66,20 +69,21 @@ def _add(found: Solved, plan: Plan, variants: Variants, values: dict[str, object
     units: tuple[str, ...] = ()
     findings, status, step = "", "", np.nan
     measured: dict[str, FloatArray] = dict.fromkeys(plan.measures, np.zeros(0))
+    histories: dict[str, FloatArray] = {}
     try:
-        scenario = variants.at(values, told=False)
-        case = scenario.case
+        case = variants.at(values, told=False).case
         if not isinstance(case, Drive):
             raise ValueError("prescribed loads are not swept")
         vehicle = case.vehicle
         contacts, dofs = tuple(contact.name for contact in vehicle.contacts), tuple(vehicle.dof_names)
         units = tuple(np.asarray(vehicle.coordinates["dof_unit"]).tolist())
-        answer = plan.way.solve(scenario, case, plan.stated)
+        answer = plan.way.solve(case, plan.stated)
         findings, step = ", ".join(dict.fromkeys(answer.findings)), answer.time_step
         measured = answer.measured(plan.measures)
+        histories = answer.histories() if plan.histories else {}
     except (ValueError, SolveError) as refused:
         status = "; ".join(line.strip() for line in str(refused).splitlines())
     for name in plan.measures:
         found.values[name].append(measured[name])
-    for where, what in zip(found[1:], (contacts, dofs, units, status, findings, step), strict=True):
+    for where, what in zip(found[1:], (contacts, dofs, units, status, findings, step, histories), strict=True):
         where.append(what)  # type: ignore[attr-defined]

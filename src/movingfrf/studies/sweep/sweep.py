@@ -13,7 +13,7 @@ import numpy as np
 from movingfrf._basics.checks import checking
 from movingfrf._basics.progress import Progress, silent
 from movingfrf._basics.undoing import scratch
-from movingfrf.results.labels import attributes
+from movingfrf.results.labels import SCHEMAS, attributes
 from movingfrf.scenarios.scenario import Scenario
 from movingfrf.scenarios.variants import unit_of
 from movingfrf.studies.sweep.chunks import InFolder, InMemory, Kept, cases_of
@@ -32,6 +32,7 @@ def sweep(
     *,
     measures: Sequence[str] | None = None,
     response: str = "simulate",
+    histories: bool = False,
     time_step: float | None = None,
     workers: int = 1,
     store: str | Path | None = None,
@@ -57,6 +58,9 @@ def sweep(
         random responses their statistics, as `random_response` calls them.
     response : str
         `simulate`, or `random`: the response to all roads of a spectrum, as `random_response` computes it.
+    histories : bool
+        Whether forces, deflections, motions, accelerations and elevations over time are kept as well, as `simulate`
+        has them, in the scenario's steps.
     time_step : float, optional
         Step in time in place of the scenario's [s]. None: as fine as the shortest waves of each case's road need,
         found and recorded, and the scenario's where they cannot be told; what the road shows is in it either way,
@@ -77,8 +81,8 @@ def sweep(
     Raises
     ------
     ValueError
-        If an axis names nothing or none of its values suits the scenario, a measure is unknown, or the folder holds
-        another sweep.
+        If an axis names nothing or none of its values suits the scenario, a measure is unknown, memory does not
+        hold the histories, or the folder holds another sweep.
     OSError
         If the folder cannot be written, or a worker ends before its time.
 
@@ -102,7 +106,7 @@ def sweep(
     """
     with checking() as check:
         workers = check.whole("workers", workers, least=1)
-    plan = plan_of(scenario, axes, measures=measures, response=response, time_step=time_step)
+    plan = plan_of(scenario, axes, measures=measures, response=response, time_step=time_step, histories=histories)
     with ExitStack() as stack:
         folder = None if store is None else Path(store)
         if folder is None and workers > 1:
@@ -200,6 +204,8 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
             words = {"long_name": path, "units": unit} if unit else {"long_name": path}
             coordinates[names[path]] = (dimension, _coordinate(axis.along(path)), words)
     places = {plan.way.measures[name].place for name in plan.measures}
+    if plan.histories:
+        places = {"contact", "dof"}
     widths = {}
     for label, place, part in (
         ("contact_name", "contact", "contacts"),
@@ -216,6 +222,19 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
         values = [value for chunk in chunks for value in chunk.values[name]]
         made = laid(values, np.full((cases, widths[usual.place]), np.nan))
         variables[name] = ((*dims, usual.place), made, {"units": usual.units, "long_name": usual.words})
+    if plan.histories:
+        histories = each("histories")
+        most, step = max((len(one["roughness"]) for one in histories if one), default=0), _step(each("steps"))
+        coordinates["time"] = ("time", step * np.arange(most), {"units": "s", "long_name": "time"})
+        for name in ("contact_force", "deflection", "motion", "acceleration", "roughness"):
+            of = SCHEMAS["coupled"][name]
+            made = np.full((cases, most, widths[of.dims[1]]), np.nan)
+            for number, one in zip(numbers, histories, strict=True):
+                if one:
+                    values = one[name]
+                    made[number, : len(values), : values.shape[1]] = values
+            words = {"units": of.units, "long_name": of.long_name}
+            variables[name] = ((*dims, *of.dims), made.reshape(*shape, *made.shape[1:]), words)
     if plan.response == "simulate":
         steps = laid(each("steps"), np.full(cases, np.nan))
         variables["time_step"] = (dims, steps, {"units": "s", "long_name": "step in time of what was measured"})
@@ -230,6 +249,11 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
         **({"design": json.dumps(plan.design)} if plan.design else {}),
     )
     return xr.Dataset(variables, coordinates, settings)
+
+
+def _step(steps: list[float]) -> float:
+    """Step in time of histories [s], the same for all cases that have an answer."""
+    return next((step for step in steps if np.isfinite(step)), np.nan)
 
 
 def _coordinate(values: list[Any]) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cache, partial
@@ -11,10 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.checks import checking
 from movingfrf.metrics.entry import History
-from movingfrf.metrics.measures import Usual, statistics, statistics_of, usual, usual_of
+from movingfrf.metrics.measures import Usual, statistics, usual, usual_of
+from movingfrf.response.random import checked_coherence, stationary
 from movingfrf.response.ride import in_steps_of_the_band, ride
-from movingfrf.scenarios.scenario import Drive, Scenario
+from movingfrf.scenarios.scenario import Drive
 from movingfrf.scenarios.stepped import require_endless
 
 
@@ -24,12 +25,13 @@ class Answer(NamedTuple):
     measured: Callable[[Iterable[str]], dict[str, FloatArray]]  # measures by name, (contact,) or (dof,)
     findings: list[str]  # codes of what is to be known about it
     time_step: float  # of what was measured [s]; nan where there is none
+    histories: Callable[[], dict[str, FloatArray]] = dict  # by name, (time, contact) or (time, dof)
 
 
 class Way(NamedTuple):
     """One way to solve a case."""
 
-    solve: Callable[[Scenario, Drive, bool], Answer]  # in steps that are stated, or those of the band
+    solve: Callable[[Drive, bool], Answer]  # in steps that are stated, or those of the band
     measures: dict[str, Usual]
 
 
@@ -39,7 +41,7 @@ def ways() -> dict[str, Way]:
     return {"simulate": Way(_ridden, usual()), "random": Way(_at_random, statistics())}
 
 
-def _ridden(scenario: Scenario, drive: Drive, stated: bool) -> Answer:
+def _ridden(drive: Drive, stated: bool) -> Answer:
     """Solve as `run` does, without labels."""
     profile, vehicle = drive.road.profile, drive.vehicle
     if not stated:
@@ -50,11 +52,14 @@ def _ridden(scenario: Scenario, drive: Drive, stated: bool) -> Answer:
     steady = {"static_load": found.steady.load, "static_deflection": found.steady.deflection}
     history = History(arrays={**records, **steady, **vehicle.coordinates}, step=step / found.finer)
     codes = [finding.code for finding in (*found.findings, *drive.unusual)]
-    return Answer(partial(usual_of, history), codes, step)
+    return Answer(partial(usual_of, history), codes, step, found.turned)
 
 
-def _at_random(scenario: Scenario, drive: Drive, stated: bool) -> Answer:
-    """Solve for all roads of the spectrum."""
-    result = scenario.at_random()
-    codes = [str(one["code"]) for one in json.loads(result.attrs["findings"])]
-    return Answer(partial(statistics_of, result), codes, np.nan)
+def _at_random(drive: Drive, stated: bool) -> Answer:
+    """Solve for all roads of the spectrum, without labels."""
+    guideway, vehicle = require_endless(drive.guideway, instead="cdfm"), drive.vehicle
+    with checking() as check:
+        coherence = checked_coherence(check, drive.road.coherence, len(set(vehicle.paths)))
+    found = stationary(guideway, vehicle, drive.spectrum, speed=drive.journey.speed, coherence=coherence)
+    codes = [finding.code for finding in (*found.findings, *drive.of_random_roads)]
+    return Answer(lambda names: {name: found.statistics[name] for name in names}, codes, np.nan)
