@@ -179,16 +179,16 @@ class Modes(NamedTuple):
             return None
         weights = np.linalg.solve(own.square, inverse[:, dofs:].T).T / np.abs(poles).max()
         shapes = vectors[:dofs].astype(complex)
-        carried = np.zeros((5, contacts, contacts, poles.size), complex)
-        for power_out, out in entry.terms():
-            for power_in, into in entry.terms():
-                carried[power_out + power_in] += (out.T @ shapes)[:, None, :] * (weights @ into).T
-        return cls(
-            poles.astype(complex),
-            shapes,
-            tuple((weights @ part).astype(complex) if part.any() else None for part in entry),
-            tuple(part.reshape(contacts**2, -1) if part.any() else None for part in carried),
-        )
+        carried: list[ComplexArray | None] = [None] * 5
+        entered: list[ComplexArray | None] = [None] * 3
+        terms = [(power, part.T @ shapes, (weights @ part).astype(complex)) for power, part in entry.terms()]
+        for power_in, _, into in terms:
+            entered[power_in] = into
+            for power_out, out, _ in terms:
+                added, known = out[:, None, :] * into.T, carried[power_out + power_in]
+                carried[power_out + power_in] = added if known is None else known + added
+        flat = tuple(None if part is None else part.reshape(contacts**2, -1) for part in carried)
+        return cls(poles.astype(complex), shapes, tuple(entered), flat)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -422,10 +422,10 @@ def held(
     """Return A with the elastic contact springs in it, the rows of the elastic contacts, and their k(ω)."""
     elastic = np.isfinite(springs)
     rows = np.where(elastic[:, None], contact_map, 0.0)
-    massless = np.zeros((len(rows), len(rows)))
-    k = Quadratic.of(massless, np.diag(dashpots), np.diag(np.where(elastic, springs, 0.0)))
-    added = k.mapped(rows.T, rows)
-    return Quadratic(*(part + more for part, more in zip(own, added, strict=True))), rows, k
+    springs = np.where(elastic, springs, 0.0)
+    k = Quadratic.of(np.zeros((len(rows), len(rows))), np.diag(dashpots), np.diag(springs))
+    stiffer, damped = ((rows.T * each) @ rows for each in (springs, dashpots))
+    return Quadratic(own.constant + stiffer, own.linear + damped, own.square), rows, k
 
 
 def _part(
@@ -446,6 +446,10 @@ def _part(
     motion = split(rows, np.isinf(springs))
     assert motion is not None  # the vehicle has checked that
     impedance, elastic, k = held(own, rows, springs, dashpots)
+    if not np.isinf(springs).any():
+        entry = Quadratic(*(elastic.T @ c for c in k))
+        found[same] = Part(dofs, contacts, motion, impedance, entry, k, Modes.of(impedance, entry))
+        return found[same]
     free, prescribed = motion.free, motion.prescribed
     entry = Quadratic(*(free.T @ (elastic.T @ c - a @ prescribed) for c, a in zip(k, impedance, strict=True)))
     direct = Quadratic(

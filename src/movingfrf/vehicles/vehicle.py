@@ -16,7 +16,7 @@ from movingfrf._basics.remembered import Remembering, remembered
 from movingfrf._basics.values import Value
 from movingfrf._basics.wording import Standing, enumerated
 from movingfrf.vehicles.contact import Contact
-from movingfrf.vehicles.dynamics import Dynamics, Quadratic, held, parts, split
+from movingfrf.vehicles.dynamics import Dynamics, Quadratic, Split, held, parts, split
 
 # Standard acceleration of free fall as the project fixes it [m/s²].
 GRAVITY = 9.81
@@ -208,7 +208,7 @@ class Vehicle(Remembering, Value):
     def static_loads(self) -> FloatArray:
         """Contact forces of the vehicle at rest on a rigid flat road [N]."""
         impedance, rows, _ = self._held()
-        motion = split(self.matrices[3], np.isinf(self.springs))
+        motion = self._motion()
         assert motion is not None
         sag = motion.free @ np.linalg.solve(
             motion.free.T @ impedance.constant @ motion.free, motion.free.T @ self.weights
@@ -249,6 +249,11 @@ class Vehicle(Remembering, Value):
         """Stiffness with the guideway held still, rigid contacts left out [N/m]."""
         return self._held()[0].constant
 
+    @remembered
+    def _motion(self) -> Split | None:
+        return split(self.matrices[3], np.isinf(self.springs))
+
+    @remembered
     def _held(self) -> tuple[Quadratic, FloatArray, Quadratic]:
         mass, damping, stiffness, contact_map = self.matrices
         return held(Quadratic.of(mass, damping, stiffness), contact_map, self.springs, self.dashpots)
@@ -330,7 +335,7 @@ def _check_free(check: Checks, vehicle: Vehicle) -> None:
 
 def _check_held(check: Checks, vehicle: Vehicle) -> None:
     """Demand that every motion meets a stiffness, or is prescribed once by a rigid contact."""
-    motion = split(vehicle.matrices[3], np.isinf(vehicle.springs))
+    motion = vehicle._motion()
     if motion is None:
         check.refuse(
             "contacts", "must not prescribe one motion twice, but rigid contacts of this vehicle do: leave one out"
