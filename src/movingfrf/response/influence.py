@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -147,15 +148,18 @@ class Influence:
 
 def _bands(line: Line, truncation: float | None) -> IntArray:
     """Give the number of the first frequency of each band; one band begins beyond a stated truncation [Hz]."""
-    return recalled(line, f"bands, {truncation}", lambda: _bands_of(line, truncation))
-
-
-def _bands_of(line: Line, truncation: float | None) -> IntArray:
-    edges = np.exp(np.arange(TRUNCATION.bands) * (math.log(line.size) / TRUNCATION.bands)).astype(int)
     beyond = min(Truncation.stated(truncation).harmonics(line.period, line.size), line.size - 1)
+    return _bands_of(line.size, beyond)
+
+
+@lru_cache(maxsize=16)
+def _bands_of(lines: int, beyond: int) -> IntArray:
+    edges = np.exp(np.arange(TRUNCATION.bands) * (math.log(lines) / TRUNCATION.bands)).astype(int)
     starts = np.append(edges, [0, beyond])
     starts.sort()
-    return starts[np.append(True, starts[1:] > starts[:-1])]
+    starts = starts[np.append(True, starts[1:] > starts[:-1])]
+    starts.setflags(write=False)
+    return starts
 
 
 def middles(starts: IntArray, lines: int) -> IntArray:

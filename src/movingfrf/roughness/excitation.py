@@ -333,7 +333,7 @@ def _excited(profile: Profile, touch: Touch, *, start: float, distance: float, b
     # A profile without columns is the same for all paths.
     column = {path: 0 if profile.same_across else path for path in touch.paths}
     splines = {path: profile.along(path) for path in set(column.values())}
-    slope, counts = slope_of(list(splines.values()), hindmost)
+    slope, counts = _slope_at(profile, tuple(splines), hindmost)
     ahead = min(foremost + SETTING.sets_out, float(profile.stations[-1])) - foremost
     ends = np.array([foremost, foremost + ahead])
     sets_out = float(np.mean([np.diff(spline(ends)) for spline in splines.values()])) / ahead
@@ -366,6 +366,25 @@ def _apart(profile: Profile, first: float, last: float) -> tuple[float, float]:
     apart = np.diff(stations[max(begin - 1, 0) : end + 1])
     station = float(np.median(apart))
     return station, float(max(apart.min(), 1e-3 * station))
+
+
+class Slope(NamedTuple):
+    """Mean slope of a road where a journey begins."""
+
+    paths: tuple[int, ...]
+    first: float  # where that is [m]
+    found: tuple[float, bool]  # as `slope_of` gives it
+
+
+def _slope_at(profile: Profile, paths: tuple[int, ...], first: float) -> tuple[float, bool]:
+    """Find the mean slope where a journey begins, or take it again: it does not depend on how far that goes."""
+
+    def find() -> Slope:
+        return Slope(paths, first, slope_of([profile.along(path) for path in paths], first))
+
+    if not profile.remembers:
+        return find().found
+    return latest(profile, "slope", lambda known: known[:2] == (paths, first), find).found
 
 
 def slope_of(paths: Sequence[Piecewise], first: float) -> tuple[float, bool]:
