@@ -86,6 +86,13 @@ class Plan:
             files=told["files"],
         )
 
+    def require_files(self) -> None:
+        """Refuse files that are not there, or hold something else than when the sweep was asked for."""
+        there = _files(self.tables, self.axes, self.folder)
+        for name, letters in self.files.items():
+            if there.get(name) != letters:
+                raise ValueError(f"{name} {'holds something else' if name in there else 'is not there'}")
+
     @property
     def findings(self) -> list[Finding]:
         """What is to be known about the sweep as a whole."""
@@ -171,11 +178,16 @@ def plan_of(
         response=response,
         design=axes.drawn if isinstance(axes, Design) else {},
         # What they hold is part of the sweep: cases of another content do not go together.
-        files=contents([tables, *(axis.values for axis in spanned)], folder),
+        files=_files(tables, spanned, folder),
     )
     if not isinstance(_first(found).case, Drive):
         raise ValueError(f"{name}: prescribed loads are not swept; a vehicle and a road are needed")
     return found
+
+
+def _files(tables: Mapping[str, Any], axes: Axes, folder: Path) -> dict[str, str]:
+    """Tell the contents of all files of a sweep, by names that are the same wherever it is called from."""
+    return contents([tables, *(axis.values for axis in axes)], folder.resolve())
 
 
 def _first(plan: Plan) -> Scenario:
