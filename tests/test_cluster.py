@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import shutil
 import signal
@@ -119,6 +120,32 @@ def test_a_worker_is_killed(given, cluster, tmp_path):
     require_same(given, kept)
 
 
+def test_a_worker_is_killed_with_what_it_has_solved(given, cluster, tmp_path):
+    """What it had not handed over is solved again."""
+
+    def kill():
+        first = cluster.workers[0]
+        with distributed.Client(cluster.address, set_as_default=False) as client:
+            while first.poll() is None or len(client.nthreads()) > 1:
+                states = client.run_on_scheduler(
+                    lambda dask_scheduler: [*map(state, dask_scheduler.tasks.values())]
+                )
+                if len(states) > 6 and set(states) <= {"memory", "released", "forgotten"}:
+                    first.kill()
+                time.sleep(0.02)
+
+    state = operator.attrgetter("state")
+    calls = iter([kill])
+    kept = swept(
+        plan_of(given, AXES, measures="contact_force_rms"),
+        tmp_path / "kept",
+        cluster=cluster.address,
+        progress=lambda *_: next(calls, int)(),
+    )
+    assert not kept.missing()
+    require_same(given, tmp_path / "kept")
+
+
 def test_the_scheduler_is_killed(given, cluster, tmp_path):
     """One line; another one goes on from there."""
     kept = tmp_path / "kept"
@@ -162,7 +189,8 @@ def test_workers_that_cannot_be_used(given, tmp_path):
             process = begun(given, cluster, tmp_path / "kept")
             _, said = process.communicate(timeout=60)
             assert process.returncode == 2
-            assert words in said_in_a_line(said)
+            assert said_in_a_line(said).startswith("movingfrf: the cluster cannot solve the cases: ")
+            assert words in said
             assert not stored(tmp_path / "kept")
             # It has not been ended by that.
             assert cluster.workers[0].poll() is None

@@ -398,6 +398,27 @@ def test_killed_at_any_moment_and_started_again(truck):
     assert (kept / "table.csv").read_bytes() == (truck.parent / "at_once" / "table.csv").read_bytes()
 
 
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_two_at_once_on_one_folder(truck):
+    """Neither of them harms the other, whoever writes first, and the second has nothing of its own to say."""
+    order = [sys.executable, "-m", "movingfrf", "sweep", str(truck), "--over", "run.speed=8:12:150", "--measures"]
+    kept = truck.parent / "kept"
+    both = [
+        subprocess.Popen(
+            [*order, "static_load,contact_force_rms", "-o", str(kept), *others], stderr=subprocess.PIPE
+        )
+        for others in ([], ["--workers", "2"])
+    ]
+    for process in both:
+        assert process.communicate(timeout=60)[1] == b""
+        assert process.returncode == 0
+    alone = mf.sweep(
+        truck, {"run.speed": np.linspace(8.0, 12.0, 150)}, measures=["static_load", "contact_force_rms"]
+    )
+    assert (kept / "table.csv").read_text() == as_csv(alone)
+    assert sorted(file.name for file in (kept / "chunks").iterdir()) == ["00000.npz", "00001.npz", "00002.npz"]
+
+
 def test_run_with_another_value(truck):
     """As of a file in which it stands; the text in the result is such a file."""
     done = command("run", truck, "--set", "run.speed=12", "--set", "vehicle.tyre_stiffness.0=3e6", "--no-report")

@@ -167,18 +167,18 @@ def carried_out_by(client: Client, plan: Plan, kept: InFolder, chunks: Sequence[
     # What they call is named and not handed over: a scheduler or a worker that cannot load it would end by that.
     function = (resolve_name, f"{__name__}:{chunk_of.__name__}")
     graph: dict[str, Any] = {name: (str, json.dumps([software(), plan.text]))}
-    chunk_names = {f"{name}-{number}": number for number in chunks}
-    graph |= {key: (call, function, number, name) for key, number in chunk_names.items()}
+    keys = [f"{name}-{number}" for number in chunks]
+    graph |= {key: (call, function, number, name) for key, number in zip(keys, chunks, strict=True)}
     with _connected():
         stage = "cases" if client.nthreads() else "waiting for workers"
-        waiting = dict(zip(client.get(graph, [*chunk_names], sync=False), chunks, strict=True))
+        waiting = dict(zip(client.get(graph, keys, sync=False), chunks, strict=True))
     while waiting:
         progress(stage, 1.0 - len(waiting) / len(chunks))
         done = [task for task in waiting if task.status == "finished"]
         with _connected():
             contents = client.gather(done)
         for task, content in zip(done, contents, strict=True):
-            # Whoever is not waited for any more, its result is forgotten by the cluster.
+            # Nothing refers to it any more, upon which the cluster forgets it.
             kept.store(waiting.pop(task), content)
             stage = "cases"
         # Whatever is done is stored, and then told what went wrong.
@@ -189,8 +189,8 @@ def carried_out_by(client: Client, plan: Plan, kept: InFolder, chunks: Sequence[
 
 
 def _require_well(task: Future) -> None:
-    """Refuse to go on without a task."""
-    if task.status in ("cancelled", "lost"):
+    """Refuse to go on without a task; one that is lost with a worker is done again by another."""
+    if task.status == "cancelled":
         raise _alone()
     if task.status == "error":
         with _connected():
