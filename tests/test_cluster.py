@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import operator
 import os
 import shutil
@@ -120,10 +121,11 @@ def test_a_worker_is_killed(given, cluster, tmp_path):
     require_same(given, kept)
 
 
-def test_a_worker_is_killed_with_what_it_has_solved(given, cluster, tmp_path):
-    """What it had not handed over is solved again."""
+def test_a_worker_is_killed_with_what_it_has_solved(given, cluster, tmp_path, caplog):
+    """What it had not handed over is solved again; whatever dask logs of it is nothing to the user."""
 
     def kill():
+        logging.getLogger("of dask").error("a connection is lost")
         first = cluster.workers[0]
         with distributed.Client(cluster.address, set_as_default=False) as client:
             while first.poll() is None or len(client.nthreads()) > 1:
@@ -144,6 +146,9 @@ def test_a_worker_is_killed_with_what_it_has_solved(given, cluster, tmp_path):
     )
     assert not kept.missing()
     require_same(given, tmp_path / "kept")
+    assert not caplog.records
+    logging.getLogger("of others").error("is heard again")
+    assert len(caplog.records) == 1
 
 
 def test_the_scheduler_is_killed(given, cluster, tmp_path):

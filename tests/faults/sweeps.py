@@ -105,12 +105,6 @@ FAULTS = [
         'if task.status == "cancelled":',
         'if task.status in ("cancelled", "lost"):',
     ),
-    Fault(
-        "scheduler that nobody misses",
-        "studies/sweep/cluster.py",
-        'if task.status == "cancelled":',
-        "if False:",
-    ),
     Fault("chunk that never comes", "studies/sweep/cluster.py", 'if task.status == "error":', "if False:"),
     Fault(
         "function that ends who cannot load it",

@@ -42,6 +42,8 @@ def carried_on(folder: Path, kept: Kept, chunks: Sequence[int], workers: int, pr
         for process in running:
             process.kill()
             process.wait()
+            if process.stderr:
+                process.stderr.close()
 
     with undone(stop):
         reading, writing = os.pipe()
@@ -65,7 +67,7 @@ def carried_on(folder: Path, kept: Kept, chunks: Sequence[int], workers: int, pr
             progress("cases", 1.0 - len(wanted & set(kept.missing())) / len(wanted))
             _require_well(running)
             time.sleep(CHUNKING.look)
-    _require_well(running)
+        _require_well(running)
 
 
 def _require_well(running: Sequence[subprocess.Popen[str]]) -> None:
