@@ -12,7 +12,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 TESTS = PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadgroup
 
-.PHONY: demo paper test test-slow lowest newest coverage bench speed cost against scale random fuzz honest accuracy faults calls lint format dist picture clean
+.PHONY: demo paper test test-slow lowest newest coverage bench speed cost against scale workers kills random fuzz honest accuracy faults calls lint format dist picture clean
 
 demo: $(READY)
 	@mkdir -p out
@@ -68,6 +68,14 @@ against: $(READY)
 scale: $(READY)
 	$(BIN)/python -m benchmarks.profiles
 	$(BIN)/python -m benchmarks.train
+
+# What it costs to share a sweep out among processes, or the workers of a cluster; on idle cores.
+workers: $(READY)
+	$(BIN)/python -m benchmarks.workers
+
+# `kill -9` of client, worker and scheduler of a cluster, at ten random moments each.
+kills: $(READY)
+	$(BIN)/python -m benchmarks.kills
 
 # Closed form against four hundred realisations.
 random: $(READY)

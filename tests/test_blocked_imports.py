@@ -23,7 +23,7 @@ BLOCKED = (
     "skfem",
     "threadpoolctl",
 )
-EXTRAS = ("FLife", "pyopencrg", "pyuff", "python_calamine")
+EXTRAS = ("FLife", "distributed", "pyopencrg", "pyuff", "python_calamine")
 
 PRELUDE = f"""
 import sys

@@ -225,6 +225,37 @@ def test_a_disk_is_full_or_read_only(small_disk, tmp_path, capsys):
         assert not list(small_disk.iterdir())
 
 
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_disk_that_is_full_in_mid_sweep(workers, tmp_path):
+    """The chunk at hand is lost, and no other: with room again, the sweep goes on from there."""
+    (tmp_path / "truck.toml").write_text(SHORT, encoding="utf-8")
+    # A process of its own, of which, and of whose workers, every file past the first ones finds no room.
+    (tmp_path / "sitecustomize.py").write_text(
+        "import errno, os\n"
+        "real = os.fsync\n"
+        "def full(number):\n"
+        "    if os.path.isdir('kept/chunks') and len([n for n in os.listdir('kept/chunks') if n[0] != '.']) > 1:\n"
+        "        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))\n"
+        "    real(number)\n"
+        "os.fsync = full\n"
+    )
+    order = ["sweep", "truck.toml", "--over", "run.speed=8:12:300", "--measures", "static_load", "-o", "kept"]
+    order += ["--workers", str(workers)]
+    paths = os.pathsep.join([str(tmp_path), *sys.path])
+    done = command(*order, stdout=subprocess.PIPE, cwd=tmp_path, env={"PYTHONPATH": paths})
+    assert done.returncode == 2
+    (said,) = done.stderr.decode().splitlines()
+    assert os.strerror(errno.ENOSPC) in said
+    kept = everything(tmp_path / "kept")
+    chunks = {name: content for name, content in kept.items() if name.endswith(".npz")}
+    assert 2 <= len(chunks) < 5
+    assert set(kept) == {"sweep.json", "chunks", *chunks}
+    again = command(*order, stdout=subprocess.PIPE, cwd=tmp_path)
+    assert (again.returncode, again.stderr) == (0, b"")
+    assert chunks.items() <= everything(tmp_path / "kept").items()
+    assert b"300 cases, none without an answer" in again.stdout
+
+
 def test_a_folder_that_vanishes_meanwhile(tmp_path):
     def computed(folder):
         with replacing(folder) as files:

@@ -45,7 +45,7 @@ def test_the_reference_case_is_what_the_package_writes():
 
 def test_makefile_and_pipeline_call_what_there_is():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    for target in ("bench", "speed", "against"):
+    for target in ("bench", "speed", "against", "workers", "kills"):
         (recipe,) = re.findall(rf"^{target}: .*\n((?:\t.*\n)+)", makefile, re.MULTILINE)
         assert f"-m benchmarks.{target}" in recipe
         assert (ROOT / "benchmarks" / f"{target}.py").exists()

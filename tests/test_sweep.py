@@ -233,7 +233,9 @@ def test_nothing_depends_on_order_chunks_or_workers(truck, monkeypatch, tmp_path
     assert mf.sweep(truck, GRID).identical(found)
     assert mf.sweep(truck, GRID, store=tmp_path / "kept").identical(found)
     monkeypatch.undo()
-    assert mf.sweep(truck, GRID, workers=2).identical(found)
+    # Of one chunk a process makes all; these are three.
+    more = {"run.speed": np.linspace(8.0, 12.0, 130)}
+    assert mf.sweep(truck, more, workers=2).identical(mf.sweep(truck, more))
     fewer = mf.sweep(truck, GRID | {"run.speed": [10.0]})
     np.testing.assert_array_equal(fewer.contact_force_peak[0], found.contact_force_peak[1])
 
@@ -426,6 +428,27 @@ def test_killed_at_any_moment_and_started_again(truck):
     whole_run = command("sweep", truck, *over, "-o", truck.parent / "at_once")
     assert whole_run.returncode == 0, whole_run.stderr
     assert (kept / "table.csv").read_bytes() == (truck.parent / "at_once" / "table.csv").read_bytes()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_two_at_once_on_one_folder(truck):
+    """Neither of them harms the other, whoever writes first, and the second has nothing of its own to say."""
+    order = [sys.executable, "-m", "movingfrf", "sweep", str(truck), "--over", "run.speed=8:12:150", "--measures"]
+    kept = truck.parent / "kept"
+    both = [
+        subprocess.Popen(
+            [*order, "static_load,contact_force_rms", "-o", str(kept), *others], stderr=subprocess.PIPE
+        )
+        for others in ([], ["--workers", "2"])
+    ]
+    for process in both:
+        assert process.communicate(timeout=60)[1] == b""
+        assert process.returncode == 0
+    alone = mf.sweep(
+        truck, {"run.speed": np.linspace(8.0, 12.0, 150)}, measures=["static_load", "contact_force_rms"]
+    )
+    assert (kept / "table.csv").read_text() == as_csv(alone)
+    assert sorted(file.name for file in (kept / "chunks").iterdir()) == ["00000.npz", "00001.npz", "00002.npz"]
 
 
 def test_run_with_another_value(truck):

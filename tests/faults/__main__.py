@@ -147,8 +147,16 @@ def selection(fault: Fault | None) -> list[str]:
         return FILES + PROFILES + SELECTION
     if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE
+    if file == "studies/sweep/cluster.py":
+        return ["tests/test_cluster.py"]
     if file.startswith("studies/sweep") or fault in faults_of("sweeps"):
-        return ["tests/test_roads_by_seed.py", "tests/test_sweep.py", "tests/test_designs.py", *SELECTION]
+        return [
+            "tests/test_roads_by_seed.py",
+            "tests/test_sweep.py",
+            "tests/test_designs.py",
+            "tests/test_cluster.py",
+            *SELECTION,
+        ]
     if file.startswith("scenarios/"):
         return SCENARIOS + SELECTION
     if file.startswith(SHOWN):

@@ -63,6 +63,8 @@ def main(arguments: list[str] | None = None) -> int:
         said = "the case does not fit into the memory of this machine"
     except BrokenPipeError:
         pass  # whoever read, as `head` does, has read enough
+    except (ChildProcessError, ConnectionError) as error:
+        said = str(error)  # of others that compute
     except OSError as error:
         said = _failed(error)
     except SystemExit:

@@ -9,7 +9,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from movingfrf._basics import wording
-from movingfrf._basics.checks import ValidityWarning
+from movingfrf._basics.checks import ValidityWarning, checking
 from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
 
 
@@ -128,7 +128,8 @@ def sweep(
     seed: int = 0,
     time_step: float | None = None,
     part: str | None = None,
-    workers: int = 1,
+    workers: int | None = None,
+    cluster: str | None = None,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
 ) -> None:
     """Solve many cases of a scenario, and measure each.
@@ -160,7 +161,10 @@ def sweep(
         Which part of the cases, as 3/64: for jobs of an array. A call without it then solves what is missing, and
         writes the tables.
     workers
-        Processes, each on one thread.
+        Processes, each on one thread; one by default.
+    cluster
+        Where a scheduler of dask.distributed listens, as tcp://host:8786, whose workers solve the cases instead;
+        needs the extra distributed.
     output
         The folder to write into; out/NAME-sweep beside the scenario by default.
     """
@@ -178,13 +182,17 @@ def sweep(
         from movingfrf.studies.sweep.sweep import gathered, swept
         from movingfrf.studies.sweep.words import axes_in, part_in, ranges_in
 
+        if workers is not None and cluster is not None:
+            raise ValueError("--workers and --cluster exclude each other: a cluster has workers of its own")
+        with checking() as check:
+            processes = check.whole("--workers", 1 if workers is None else workers, least=1)
         which = (1, 1) if part is None else part_in(part)
         names = None if measures is None else [name.strip() for name in measures.split(",") if name.strip()]
         response = "random" if at_random else "simulate"
         axes = axes_in(over) if samples is None else drawn(ranges_in(over), samples=samples, kind=design, seed=seed)
         plan = plan_of(file, axes, measures=names, response=response, time_step=time_step)
         folder = output if output is not None else file.parent / "out" / f"{plan.name}-sweep"
-        kept = swept(plan, folder, part=which, workers=workers, progress=stages.report)
+        kept = swept(plan, folder, part=which, workers=processes, cluster=cluster, progress=stages.report)
         table = None
         if part is None:
             stages.report("writing", 0.0)

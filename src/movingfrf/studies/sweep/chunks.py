@@ -24,6 +24,8 @@ class Chunking:
     cases: int = 64  # of a chunk, where there are few [16 to 1024]
     look: float = 0.05  # between looks at what other processes have solved [s; 0.01 to 1]
     most: int = 4096  # chunks; of more cases twice as many each, and so on [256 to 65 536]
+    word: int = 4  # bytes of a number that a worker is told [a convention]
+    answer: float = 5.0  # within which the scheduler of a cluster answers [s; 1 to 60]
 
 
 CHUNKING = Chunking()
@@ -124,7 +126,11 @@ class InFolder:
 
     def put(self, number: int, solved: Solved) -> None:
         """Write a chunk, whole or not at all."""
-        write_whole(self._file(number), as_bytes(solved))
+        self.store(number, as_bytes(solved))
+
+    def store(self, number: int, content: bytes) -> None:
+        """Write what `as_bytes` made of a chunk, whole or not at all."""
+        write_whole(self._file(number), content)
 
     def all(self) -> Iterator[Solved]:
         """Read all chunks in order."""

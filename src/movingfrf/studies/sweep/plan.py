@@ -98,6 +98,13 @@ class Plan(Remembering):
             files=told["files"],
         )
 
+    def require_files(self) -> None:
+        """Refuse files that are not there, or hold something else than when the sweep was asked for."""
+        there = _files(self.tables, self.axes, self.folder)
+        for name, letters in self.files.items():
+            if there.get(name) != letters:
+                raise ValueError(f"{name} {'holds something else' if name in there else 'is not there'}")
+
     @property
     def findings(self) -> list[Finding]:
         """What is to be known about the sweep as a whole."""
@@ -217,7 +224,7 @@ def plan_of(
         histories=histories,
         design=axes.drawn if isinstance(axes, Design) else {},
         # What they hold is part of the sweep: cases of another content do not go together.
-        files=contents([tables, *(axis.values for axis in spanned)], folder),
+        files=_files(tables, spanned, folder),
     )
     first = _first(found).case
     if not isinstance(first, Drive):
@@ -234,6 +241,11 @@ def plan_of(
 def _moving(path: str) -> bool:
     """Whether a key says how something travels, or what does."""
     return path.split(".")[0] in ("run", "vehicle")
+
+
+def _files(tables: Mapping[str, Any], axes: Axes, folder: Path) -> dict[str, str]:
+    """Tell the contents of all files of a sweep, by names that are the same wherever it is called from."""
+    return contents([tables, *(axis.values for axis in axes)], folder.resolve())
 
 
 def _first(plan: Plan) -> Scenario:

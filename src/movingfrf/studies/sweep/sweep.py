@@ -121,6 +121,7 @@ def swept(
     *,
     part: tuple[int, int] = (1, 1),
     workers: int = 1,
+    cluster: str | None = None,
     progress: Progress = silent,
 ) -> Kept:
     """Solve what is missing of a sweep.
@@ -135,6 +136,9 @@ def swept(
         Which part (k, n) of the chunks is solved: every nth, from the kth on.
     workers : int
         Processes.
+    cluster : str, optional
+        Where a scheduler of dask.distributed listens, whose workers solve the cases in place of this process, if
+        there is a folder.
     progress : callable
         Called with the name of a stage and the fraction of it that is done.
 
@@ -142,9 +146,24 @@ def swept(
     -------
     Kept
         All chunks that are there.
+
+    Raises
+    ------
+    ValueError
+        If the folder holds another sweep, or dask.distributed is not installed.
+    OSError
+        If the folder cannot be written, a worker ends before its time, or no scheduler answers.
     """
+    if cluster is not None and folder is not None:
+        from movingfrf.studies.sweep.cluster import carried_out_by, scheduler_at
+
+        # Before there is a folder.
+        with scheduler_at(cluster) as client:
+            stored = InFolder(folder, plan)
+            carried_out_by(client, plan, stored, _of_part(part, stored), progress)
+        return stored
     kept: Kept = InMemory(plan) if folder is None else InFolder(folder, plan)
-    mine = [number for number in kept.missing() if number % part[1] == part[0] - 1]
+    mine = _of_part(part, kept)
     if workers > 1 and folder is not None and len(mine) > 1:
         carried_on(folder, kept, mine, min(workers, len(mine)), progress)
         return kept
@@ -158,6 +177,11 @@ def swept(
         told(0)
         kept.put(number, solved(plan, variants, first, last, told))
     return kept
+
+
+def _of_part(part: tuple[int, int], kept: Kept) -> list[int]:
+    """List the chunks of a part that are missing."""
+    return [number for number in kept.missing() if number % part[1] == part[0] - 1]
 
 
 def gathered(plan: Plan, kept: Kept) -> xr.Dataset:

@@ -1,4 +1,4 @@
-"""Other processes that solve chunks of a sweep; the folder is all that they have in common."""
+"""Other processes that solve chunks of a sweep; its folder and a pipe are all that they have in common."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from movingfrf.studies.sweep.chunks import CHUNKING, Kept
 
 
 def carried_on(folder: Path, kept: Kept, chunks: Sequence[int], workers: int, progress: Progress) -> None:
-    """Have chunks solved by other processes, every so-many-th by each, and wait for them.
+    """Have chunks solved by other processes, each the next when it is done with one, and wait for them.
 
     Parameters
     ----------
@@ -42,26 +42,32 @@ def carried_on(folder: Path, kept: Kept, chunks: Sequence[int], workers: int, pr
         for process in running:
             process.kill()
             process.wait()
+            if process.stderr:
+                process.stderr.close()
 
     with undone(stop):
-        for number in range(workers):
-            mine = ",".join(map(str, chunks[number::workers]))
-            command = [sys.executable, "-m", "movingfrf.studies.sweep.worker", str(folder), mine]
+        reading, writing = os.pipe()
+        command = [sys.executable, "-m", "movingfrf.studies.sweep.worker", str(folder)]
+        for _ in range(workers):
             process = subprocess.Popen(
                 command,
                 env=os.environ | one_thread,
-                stdin=subprocess.DEVNULL,
+                stdin=reading,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.PIPE,
                 text=True,
             )
             running.append(process)
+        # None is read twice, whoever comes first.
+        os.write(writing, b"".join(number.to_bytes(CHUNKING.word) for number in chunks))
+        for end in (writing, reading):
+            os.close(end)
         wanted = set(chunks)
         while any(process.poll() is None for process in running):
             progress("cases", 1.0 - len(wanted & set(kept.missing())) / len(wanted))
             _require_well(running)
             time.sleep(CHUNKING.look)
-    _require_well(running)
+        _require_well(running)
 
 
 def _require_well(running: Sequence[subprocess.Popen[str]]) -> None:
