@@ -71,6 +71,12 @@ def usable(module: str) -> bool:
     return numba_is_there() and _loaded(module) is not None
 
 
+def load() -> None:
+    """Load all compiled loops of the frequency domain, where they can be used."""
+    for module in ("_basics", "guideways", "vehicles", "response"):
+        usable(f"{module}.compiled")
+
+
 @cache
 def _loaded(module: str) -> ModuleType | None:
     """Load compiled loops, and compile them if that has not been done; None where that is not possible.

@@ -165,7 +165,7 @@ def swept(
     kept: Kept = InMemory(plan) if folder is None else InFolder(folder, plan)
     mine = _of_part(part, kept)
     if workers > 1 and folder is not None and len(mine) > 1:
-        carried_on(folder, kept, mine, min(workers, len(mine)), progress)
+        carried_on(plan, folder, kept, mine, min(workers, len(mine)), progress)
         return kept
     variants = plan.variants
     for done, number in enumerate(mine):
