@@ -74,9 +74,9 @@ FAULTS = [
     ),
     Fault(
         "worst where it is best",
-        "studies/sweep/page.py",
-        "np.nanargmin(seen.values) if seen.smallest else np.nanargmax",
-        "np.nanargmax(seen.values) if seen.smallest else np.nanargmin",
+        "studies/sweep/page/seen.py",
+        "np.nanargmin(self.worst) if self.below else np.nanargmax",
+        "np.nanargmax(self.worst) if self.below else np.nanargmin",
     ),
     Fault(
         "unit of another degree of freedom",
