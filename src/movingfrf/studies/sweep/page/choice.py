@@ -20,12 +20,12 @@ class Drawn:
     """How much a figure of a sweep bears; conventions, which captions state."""
 
     map_places: int = 5  # along both axes at the least, for a map
-    map_most: int = 60  # of a map, along each axis
+    map_most: int = 40  # of a map, along each axis
     names: int = 12  # of a text axis, each with its own line; of more, ranks
     name_letters: int = 30  # the end of a longer one is shown
     curve_points: int = 250  # buckets of a curve, each with its extremes
     samples: int = 400  # dots of a scatter
-    keys: int = 3  # scatters beside a histogram, those that matter most
+    keys: int = 2  # scatters beside a histogram, those that matter most
     stretches: int = 3  # said one by one
     resamples: int = 200  # of a saltelli design, for how uncertain its shares are
     confidence: float = 0.95
