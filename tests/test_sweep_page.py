@@ -229,7 +229,7 @@ def test_how_far_axes_move_a_measure():
     (seen,) = seen_of(table)
     first, second = reaches(table, seen)
     assert (first, second) == (("speed", 1.0, 6.0), ("vehicle", 2.0, 4.0))
-    assert "Most: dynamic load coefficient on speed, 1.000 to 6.000." in render(table, "", "")
+    assert "What matters most – dynamic load coefficient: speed, 1.000 to 6.000." in render(table, "", "")
     values[2, 1] = np.nan
     table = table_of({"speed": [1.0, 2.0, 3.0], "vehicle": ["a", "b"]}, front=values)
     (seen,) = seen_of(table)

@@ -146,7 +146,7 @@ def worst(table: xr.Dataset, seen: Seen) -> str:
     beside = ""
     if seen.static is not None and seen.static[seen.at] > 0:
         beside = f", {number(value / float(seen.static[seen.at]), 2)} of the static load"
-    if seen.calmest and seen.units == "m/s²":
+    if seen.felt and seen.units == "m/s²":
         beside = f", {' or '.join(f'“{words}”' for words in comfort_reactions(value))} in ISO 2631-1"
     told = case_in_words(table, case)
     here = f"at {str(seen.places[seen.at]).replace('_', ' ')}" + (f", {told}" if told else "")

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from movingfrf._basics.wording import raised
-from movingfrf.reports.curves import readable
-from movingfrf.studies.sweep.page.words import short, unit_of
+from movingfrf.studies.sweep.page.words import key_in_words, short, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +33,7 @@ def name_axis(axis: Axis, table: xr.Dataset, key: str, most: int = 9) -> None:
 
     power = power_of(table[key].values.astype(float))
     unit = f"10{raised(str(power))} {unit_of(table, key)}".strip() if power else unit_of(table, key)
-    axis.set_label_text(f"{readable(key)} [{unit}]" if unit else readable(key))
+    axis.set_label_text(f"{key_in_words(key)} [{unit}]" if unit else key_in_words(key))
     axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]))
     axis.set_major_formatter(FuncFormatter(lambda value, _: short(value / 10.0**power, 6)))
 

@@ -10,14 +10,14 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import evenly_spread
 from movingfrf.reports.axes import decimated, legend_above
-from movingfrf.reports.curves import GREY, PALETTE, readable
+from movingfrf.reports.curves import GREY, PALETTE
 from movingfrf.reports.figures import SIZE, blank
 from movingfrf.studies.sweep.page.answers import Axis, Stretch, beyond, passes, share, where, worst
 from movingfrf.studies.sweep.page.axes import name_axis
 from movingfrf.studies.sweep.page.choice import DRAWN
 from movingfrf.studies.sweep.page.kind import View
 from movingfrf.studies.sweep.page.lines import Line, lines_of, what_is_taken
-from movingfrf.studies.sweep.page.words import places_of, said, unit_of
+from movingfrf.studies.sweep.page.words import key_in_words, places_of, said, unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,7 +42,7 @@ def _passing(view: View) -> str:
     table, seen, chosen = view
     lines, found = lines_of(view), stretches_of(view)
     places = places_of(table, chosen.along)
-    axis = Axis(readable(chosen.along), places, unit_of(table, chosen.along))
+    axis = Axis(key_in_words(chosen.along), places, unit_of(table, chosen.along))
     mean = " in the mean over the roads" if chosen.seeds else ""
     if not any(found):
         words = f"{passes(seen, never=True)}{mean}."
@@ -69,7 +69,7 @@ def _roads(view: View, lines: list[Line]) -> str:
         return "Not a single road does."
     with np.errstate(invalid="ignore", divide="ignore"):
         line, place = np.unravel_index(int(np.nanargmax(over / there)), over.shape)
-    at = f"{readable(chosen.along)} {said(view.table, chosen.along, view.table[chosen.along].values[place])}"
+    at = f"{key_in_words(chosen.along)} {said(view.table, chosen.along, view.table[chosen.along].values[place])}"
     label = f"{lines[line].label}, " if lines[line].label else ""
     return f"At {label}{at} most roads do: {share(int(over[line, place]), int(there[line, place]), 'roads')}."
 

@@ -10,13 +10,13 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import evenly_spread
 from movingfrf.reports.axes import legend_above
-from movingfrf.reports.curves import GREY, PALETTE, readable
+from movingfrf.reports.curves import GREY, PALETTE
 from movingfrf.reports.figures import SIZE, blank
 from movingfrf.studies.sweep.page.answers import passes, worst
 from movingfrf.studies.sweep.page.choice import DRAWN
 from movingfrf.studies.sweep.page.kind import View
 from movingfrf.studies.sweep.page.lines import Line, lines_of, what_is_taken
-from movingfrf.studies.sweep.page.words import names_of
+from movingfrf.studies.sweep.page.words import key_in_words, names_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,13 +51,13 @@ def answer(view: View) -> str:
             for line, each in zip(lines, over, strict=True)
             if each.any()
         ]
-        counts[0] += f" values of {readable(chosen.along)}"
+        counts[0] += f" values of {key_in_words(chosen.along)}"
         more = f"; {len(counts) - len(PALETTE)} more" if len(counts) > len(PALETTE) else ""
         said = f"– {'; '.join(counts[: len(PALETTE)])}{more}"
     else:
         found = [names[number] for number in worst_first(view) if over[:, number].any()]
         listed = f": {', '.join(found)}" if len(found) <= len(PALETTE) else ""
-        said = f"for {len(found)} of {len(names)} values of {readable(chosen.along)}{listed}"
+        said = f"for {len(found)} of {len(names)} values of {key_in_words(chosen.along)}{listed}"
     return f"{passes(seen)}{mean} {said}. {told}"
 
 
@@ -66,13 +66,13 @@ def drawn(view: View) -> str:
     words = what_is_taken(view)
     lines = lines_of(view)
     if len(lines) > len(PALETTE):
-        words.append(f"{len(PALETTE)} of {len(lines)} values of {readable(view.layout.across)} are drawn.")
+        words.append(f"{len(PALETTE)} of {len(lines)} values of {key_in_words(view.layout.across)} are drawn.")
     if view.layout.seeds:
         words.append(
             "Means over the roads" + ("." if _ranked(view) else ", bars from their 5th to 95th percentile.")
         )
     if _ranked(view):
-        words.append(f"Each curve has its own order of {readable(view.layout.along)}; table.csv has the names.")
+        words.append(f"Each curve has its own order of {key_in_words(view.layout.along)}; table.csv has the names.")
     return " ".join(words)
 
 
@@ -124,7 +124,7 @@ def _ranks(view: View) -> Figure:
         ax.plot(np.array(some) + 1, values[some], color=colour, label=line.label or None, linewidth=1.4)
     if seen.limit:
         ax.axhline(seen.limit.value, color=GREY, linestyle=":", linewidth=1.4, label=f"limit {seen.limit.said}")
-    ax.set(xlabel=f"{readable(chosen.along)}, number from the worst on", ylabel=seen.label)
+    ax.set(xlabel=f"{key_in_words(chosen.along)}, number from the worst on", ylabel=seen.label)
     ax.ticklabel_format(axis="y", useOffset=False)
     legend_above(ax)
     return made

@@ -11,7 +11,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf.reports.curves import PALETTE, readable
 from movingfrf.studies.sweep.page.choice import laid_out
 from movingfrf.studies.sweep.page.kind import View
-from movingfrf.studies.sweep.page.words import names_of
+from movingfrf.studies.sweep.page.words import key_in_words, names_of
 
 
 class Line(NamedTuple):
@@ -39,7 +39,7 @@ def lines_of(view: View) -> list[Line]:
 
     if chosen.across:
         found = lines(seen.worst)
-        names = [f"{readable(chosen.across)} {name}" for name in names_of(table, chosen.across)]
+        names = [f"{key_in_words(chosen.across)} {name}" for name in names_of(table, chosen.across)]
         return [Line(name, found[:, number]) for number, name in enumerate(names)]
     there = [number for number in range(seen.each.shape[-1]) if np.isfinite(seen.each[..., number]).any()]
     one_each = all((seen.places[..., number] == seen.places[..., number].flat[0]).all() for number in there)
@@ -62,5 +62,5 @@ def what_is_taken(view: View) -> list[str]:
         several = np.isfinite(seen.each).any(axis=tuple(range(seen.each.ndim - 1))).sum() > 1
         words += [f"Of each case the worst {place}."] if several else []
     if chosen.others:
-        words.append(f"Of all values of {' and '.join(map(readable, chosen.others))} the worst.")
+        words.append(f"Of all values of {' and '.join(map(key_in_words, chosen.others))} the worst.")
     return words

@@ -10,14 +10,14 @@ import numpy as np
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import evenly_spread
 from movingfrf.reports.axes import legend_above
-from movingfrf.reports.curves import GREY, PALETTE, readable
+from movingfrf.reports.curves import GREY, PALETTE
 from movingfrf.reports.figures import SIZE, blank
 from movingfrf.studies.sweep.page.answers import Axis, beyond, counted, passes, where, worst
 from movingfrf.studies.sweep.page.axes import name_axis
 from movingfrf.studies.sweep.page.choice import DRAWN, laid_out
 from movingfrf.studies.sweep.page.kind import View
 from movingfrf.studies.sweep.page.lines import what_is_taken
-from movingfrf.studies.sweep.page.words import places_of, said, unit_of
+from movingfrf.studies.sweep.page.words import key_in_words, places_of, said, unit_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,11 +46,11 @@ def answer(view: View) -> str:
     if not seen.beyond(seen.worst).any():
         return f"{passes(seen, never=True)}. {told}"
     along, across = (places_of(table, dim) for dim in (chosen.along, chosen.across))
-    axis = Axis(readable(chosen.along), along, unit_of(table, chosen.along))
+    axis = Axis(key_in_words(chosen.along), along, unit_of(table, chosen.along))
     values = field(view)
     mean = " in the mean over the roads" if chosen.seeds else ""
     ends = [
-        f"at {readable(chosen.across)} {said(table, chosen.across, across[end])} {where(found, axis)}"
+        f"at {key_in_words(chosen.across)} {said(table, chosen.across, across[end])} {where(found, axis)}"
         for end in (int(across.argmin()), int(across.argmax()))
         for found in [beyond(along, values[:, end], seen.limit.value, below=seen.below)]
     ]

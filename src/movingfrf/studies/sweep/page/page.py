@@ -19,7 +19,7 @@ from movingfrf.studies.sweep.page.kind import Kind, View
 from movingfrf.studies.sweep.page.limits import Limit
 from movingfrf.studies.sweep.page.seen import seen_of
 from movingfrf.studies.sweep.page.tables import findings, tables
-from movingfrf.studies.sweep.page.words import keys_of, said
+from movingfrf.studies.sweep.page.words import key_in_words, keys_of, said
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -126,7 +126,7 @@ def _summary(table: xr.Dataset) -> str:
         drawn = json.loads(table.attrs["design"])
         of = f", drawn ({drawn['kind'].replace('_', ' ')}) of {' and '.join(drawn['paths'])}"
     else:
-        of = ": " + " × ".join(f"{table.sizes[dim]} of {str(dim).replace('_', ' ')}" for dim in table.status.dims)
+        of = ": " + " × ".join(f"{table.sizes[dim]} of {key_in_words(str(dim))}" for dim in table.status.dims)
     return f"{count(cases, 'case')}{of}. {_answered(cases, without)}"
 
 

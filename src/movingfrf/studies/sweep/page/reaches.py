@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from movingfrf._basics.wording import number
-from movingfrf.reports.curves import PALETTE, readable
+from movingfrf.reports.curves import PALETTE
 from movingfrf.reports.figures import Illustration
 from movingfrf.studies.sweep.page.seen import Seen
 from movingfrf.studies.sweep.page.tornado import Panel, tornado
+from movingfrf.studies.sweep.page.words import key_in_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,12 +74,12 @@ def _caption(told: list[tuple[Seen, list[Reach]]]) -> str:
     """Say what moves each measure most."""
 
     def span(seen: Seen, one: Reach) -> str:
-        return f"{seen.called} on {readable(one.axis)}, {number(one.low)} to {seen.written(one.high)}"
+        return f"{seen.called}: {key_in_words(one.axis)}, {number(one.low)} to {seen.written(one.high)}"
 
     most = "; ".join(span(seen, found[0]) for seen, found in told)
     return (
-        f"Most: {most}. Each bar goes from the smallest to the largest mean along an axis, over all values of the "
-        "others; what two axes do only together does not show."
+        f"What matters most – {most}. Each bar goes from the smallest to the largest mean along an axis, over all "
+        "values of the others; what two axes do only together does not show."
     )
 
 

@@ -9,14 +9,14 @@ import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.wording import evenly_spread, number
-from movingfrf.reports.curves import GREY, PALETTE, readable
+from movingfrf.reports.curves import GREY, PALETTE
 from movingfrf.reports.figures import SIZE, blank
 from movingfrf.studies.sweep.page.answers import passes, share, worst
 from movingfrf.studies.sweep.page.axes import name_axis
 from movingfrf.studies.sweep.page.choice import DRAWN
 from movingfrf.studies.sweep.page.kind import View
 from movingfrf.studies.sweep.page.lines import what_is_taken
-from movingfrf.studies.sweep.page.words import keys_of
+from movingfrf.studies.sweep.page.words import key_in_words, keys_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -87,7 +87,7 @@ def answer(view: View) -> str:
         + "."
     )
     for most in influences(view)[:1]:
-        words.append(f"Of its variance some {most.percent} follow from {readable(most.key)} alone.")
+        words.append(f"Of its variance some {most.percent} follow from {key_in_words(most.key)} alone.")
     return " ".join([*words, worst(table, seen)])
 
 

@@ -57,6 +57,8 @@ class Seen:
         Whether the smallest value is the worst one.
     calmest : bool
         Whether `worst` is of the calmest.
+    felt : bool
+        Whether it is what ISO 2631-1 judges.
     limit : Bound, optional
         What it is held against.
     static : ndarray, shape (*axes, place), optional
@@ -71,6 +73,7 @@ class Seen:
     worst: FloatArray
     below: bool
     calmest: bool
+    felt: bool
     limit: Bound | None = None
     static: FloatArray | None = None
 
@@ -167,7 +170,8 @@ def _seen(table: xr.Dataset, question: Question, limit: Limit | None) -> Seen:
     elif turning is not None:
         # Rotations are of another unit.
         values, units = np.where(turning, np.nan, values), units.split(" or ")[0]
-    calmest = place == "dof" and name.startswith("weighted")
+    felt = place == "dof" and name.startswith("weighted")
+    calmest = felt and not (limit and limit.place)
     called, scale = SCALES.get(units, (units.replace("s2", "s²"), 1.0))
     with warnings.catch_warnings():
         # A case without an answer has none.
@@ -183,6 +187,7 @@ def _seen(table: xr.Dataset, question: Question, limit: Limit | None) -> Seen:
         worst=scale * worst,
         below=question.below,
         calmest=calmest,
+        felt=felt,
         static=scale * table["static_load"].values if dynamic else None,
     )
     return _limited(seen, limit, scale)

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from movingfrf.reports.curves import GREY, INK, PALETTE, readable
+from movingfrf.reports.curves import GREY, INK, PALETTE
 from movingfrf.reports.figures import Illustration
 from movingfrf.studies.sweep.design import shares_of
 from movingfrf.studies.sweep.page.choice import DRAWN
 from movingfrf.studies.sweep.page.seen import Seen
 from movingfrf.studies.sweep.page.tornado import Panel, tornado
+from movingfrf.studies.sweep.page.words import key_in_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -83,12 +84,12 @@ def _caption(told: list[tuple[str, list[Share]]]) -> str:
     """Say what matters most to each measure."""
 
     def percent(one: Share) -> str:
-        return f"{readable(one.key)} {100 * one.total:.0f} ± {100 * one.total_off:.0f} %".replace("-", "−")
+        return f"{key_in_words(one.key)} {100 * one.total:.0f} ± {100 * one.total_off:.0f} %".replace("-", "−")
 
-    most = "; ".join(f"{called}, {percent(found[0])}" for called, found in told)
+    most = "; ".join(f"{called}: {percent(found[0])}" for called, found in told)
     return (
-        f"Most of it: {most}. Wide bars: share of the variance due to a key and to what it does with others; "
-        f"narrow bars: to it alone; lines: {100 * DRAWN.confidence:g} % confidence, of samples drawn again."
+        f"What matters most – {most}. Wide bars: share of the variance due to a key and to what it does with "
+        f"others; narrow bars: to it alone; lines: {100 * DRAWN.confidence:g} % confidence, of samples drawn again."
     )
 
 

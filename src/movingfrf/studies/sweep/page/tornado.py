@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from movingfrf.reports.curves import readable
 from movingfrf.reports.figures import Illustration, blank, illustrated
+from movingfrf.studies.sweep.page.words import key_in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,7 +46,7 @@ def tornado(asks: str, caption: str, panels: Sequence[Panel]) -> Illustration:
     for number, panel in enumerate(panels):
         ax = made.add_subplot(grid[number // across, number % across])
         panel.draw(ax)
-        ax.set_yticks(np.arange(len(panel.keys)), list(map(readable, panel.keys)))
+        ax.set_yticks(np.arange(len(panel.keys)), list(map(key_in_words, panel.keys)))
         ax.set_ylim(len(panel.keys) - 0.5, -0.5)
         ax.set_title(panel.title)
         ax.grid(visible=False, axis="y")

@@ -48,6 +48,17 @@ def short(value: float, digits: int) -> str:
     return (mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa) + times + power
 
 
+def key_in_words(name: str) -> str:
+    """Write the name of a key as words; its unit stands behind its values.
+
+    Examples
+    --------
+    >>> key_in_words("speed_kmh"), key_in_words("tyre_stiffness")
+    ('speed', 'tyre stiffness')
+    """
+    return readable(name.removesuffix("_kmh"))
+
+
 def unit_of(table: xr.Dataset, name: str) -> str:
     """Give the unit of a key; empty if it has none."""
     unit = str(table[name].attrs.get("units", "1"))
@@ -62,7 +73,7 @@ def case_in_words(table: xr.Dataset, case: Sequence[int]) -> str:
     for key in keys:
         (dim,) = table[key].dims
         if table.sizes[dim] > 1:
-            told.append(f"{readable(key)} {said(table, key, table[key].values[places[str(dim)]], digits)}")
+            told.append(f"{key_in_words(key)} {said(table, key, table[key].values[places[str(dim)]], digits)}")
     return ", ".join(told)
 
 
