@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from glob import glob
 
 import numpy as np
 import pytest
 import scipy.stats
 
 import movingfrf as mf
+from movingfrf.studies.sweep import words
 from movingfrf.studies.sweep.page import curves, dots, maps, samples
 from movingfrf.studies.sweep.page.answers import Axis, Stretch, beyond, share, where
 from movingfrf.studies.sweep.page.axes import power_of
@@ -192,6 +194,10 @@ def test_samples_of_a_design():
     # Classes of finite width, and of 51 samples each.
     assert first.share == pytest.approx(4 / 45 / (4 / 45 + 1 / 300), abs=0.02)
     assert second.share == pytest.approx(1 / 300 / (4 / 45 + 1 / 300), abs=0.03)
+    # Epsilon squared by the F of an analysis of variance, of 20 classes.
+    by_class = np.array_split(values[np.argsort(x)], 20)
+    ratio = scipy.stats.f_oneway(*by_class).statistic
+    assert first.share == pytest.approx((ratio - 1) * 19 / (19 * ratio + 1024 - 20), rel=1e-9)
     assert samples.influences(the_view(table_of({"x": x, "y": y}, design=plan.drawn, front=3.0))) == []
 
 
@@ -241,7 +247,7 @@ def test_contact_and_comfort_have_limits_of_their_own():
     said = the_answer(table)
     assert "falls below 0 kN (contact is lost) – front: from 20 m/s on; nowhere else." in said
     assert "Smallest: −15.00 kN, at front, speed 35 m/s." in said
-    felt = {"bounce": 0.0315 * SPEEDS, "pitch": 9.0, "wheel": 5.0}
+    felt = {"bounce": 0.0315 * SPEEDS, "pitch": 1e-3, "wheel": 5.0}
     table = table_of({"speed": SPEEDS}, measure="weighted_acceleration_rms", **felt)
     said = the_answer(table)
     assert "exceeds 0.315 m/s² (more than “not uncomfortable” in ISO 2631-1) from 10 m/s on." in said
@@ -250,6 +256,12 @@ def test_contact_and_comfort_have_limits_of_their_own():
     assert "exceeds 4 m/s² everywhere" in said
     said = the_answer(table, [Limit("weighted_acceleration_rms", 10.0, "pitch")])
     assert "does not exceed 10 rad/s²" in said
+
+
+def test_limits_are_in_the_unit_of_the_table():
+    table = table_of({"speed": SPEEDS}, measure="contact_force_peak", front=1e3 * SPEEDS)
+    said = the_answer(table, [Limit("contact_force_peak", 2e4)])
+    assert said.startswith("The contact force peak exceeds 20 kN from 20 m/s on.")
 
 
 def test_one_case_and_none():
@@ -324,7 +336,9 @@ def test_limits_in_a_line(truck):
         limits_in(["contact_force_peak=1", "contact_force_peak=2"], plan)
 
 
-def test_files_that_match(tmp_path):
+def test_files_that_match(tmp_path, monkeypatch):
+    # However the system lists them.
+    monkeypatch.setattr(words, "glob", lambda *given, **how: sorted(glob(*given, **how), reverse=True))
     for name in ("b.csv", "a.csv", "c.txt", "more/d.csv"):
         (tmp_path / "p" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "p" / name).touch()

@@ -148,7 +148,7 @@ def selection(fault: Fault | None) -> list[str]:
     if file.startswith(ABOUT_PROFILES):
         return PROFILES + SELECTION + REFERENCE
     if file.startswith("studies/sweep") or fault in faults_of("sweeps"):
-        return ["tests/test_sweep.py", "tests/test_designs.py", *SELECTION]
+        return ["tests/test_sweep_page.py", "tests/test_sweep.py", "tests/test_designs.py", *SELECTION]
     if file.startswith("scenarios/"):
         return SCENARIOS + SELECTION
     if file.startswith(SHOWN):
