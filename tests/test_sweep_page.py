@@ -283,7 +283,7 @@ def test_powers_of_ten_of_an_axis():
 
 @pytest.mark.parametrize("kind", ["one axis", "map", "roads", "ranks", "saltelli"])
 def test_pages_of_a_hundred_thousand_cases_are_bounded(kind):
-    """Some 2 s and 2 MB each; what is noise from case to case is the worst of all."""
+    """Some 2 s and 1 MB each at most; noise from case to case takes most."""
     rng = np.random.default_rng(0)
     axes, design = {
         "one axis": ({"speed": np.linspace(5, 35, 100_000)}, None),
@@ -320,7 +320,7 @@ def test_limits_in_a_line(truck):
     ]
     assert limits_in(["contact_force_peak.wheel=1"], plan)[0].place == "wheel"
     assert limits_in(["weighted_acceleration_rms.BOUNCE=1", "contact_force_peak.1=1"], plan)[1].place == "rear"
-    for line, words in (
+    for line, why in (
         ("dynamic_load_coefficient", "must be MEASURE=VALUE"),
         ("=3", "must be MEASURE=VALUE"),
         ("dynamic_load=0.2", r"did you mean|must be one of static_load"),
@@ -329,7 +329,7 @@ def test_limits_in_a_line(truck):
         ("contact_force_peak.reer=1", r"the contact must be among .*rear.* \(did you mean 'rear'\?\)"),
         ("weighted_acceleration_rms.seat=1", "the dof must be among"),
     ):
-        with pytest.raises(ValueError, match=words) as refused:
+        with pytest.raises(ValueError, match=why) as refused:
             limits_in([line], plan)
         assert f"--limit {line}" in str(refused.value)
     with pytest.raises(ValueError, match="is limited twice"):

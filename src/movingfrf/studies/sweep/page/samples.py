@@ -52,7 +52,8 @@ def influences(view: View) -> list[Influence]:
     """Find how much of a measure's variance follows from each key of a design alone, from the most on.
 
     Samples are put into classes of equally many by their key, and variance within classes is what the key does not
-    tell: Kelley's epsilon squared, which expects nothing of a key that does nothing.
+    tell: Kelley's epsilon squared, which expects nothing of a key that does nothing, and less than there is where
+    classes are wide.
     """
     table, part = view.table, independent(view.table)
     if view.layout.along != "sample":
@@ -60,7 +61,7 @@ def influences(view: View) -> list[Influence]:
     values = view.seen.worst[part]
     there = np.isfinite(values)
     values = values[there]
-    classes = int(min(max(values.size // 16, 2), 20))
+    classes = int(min(max(values.size // 8, 2), 20))
     if values.size < 2 * classes or np.ptp(values) <= 1e-9 * np.abs(values).max():
         return []
     found = []
@@ -87,7 +88,7 @@ def answer(view: View) -> str:
         + "."
     )
     for most in influences(view)[:1]:
-        words.append(f"Of its variance some {most.percent} follow from {key_in_words(most.key)} alone.")
+        words.append(f"Of its variance {most.percent} or more follow from {key_in_words(most.key)} alone.")
     return " ".join([*words, worst(table, seen)])
 
 
