@@ -107,10 +107,11 @@ calls: $(READY)
 dist: $(READY)
 	PYTHON=$(PYTHON) tools/dist.sh
 
-# The pictures of the documentation: rooms and their arrows, drawn from the imports; sampling.
+# The pictures of the documentation: rooms and their arrows, drawn from the imports; sampling; sweeps.
 picture: $(READY)
 	$(BIN)/python docs/images/rooms.py
 	$(BIN)/python -W ignore docs/images/sampling.py
+	$(BIN)/python -W ignore docs/images/sweeps.py
 
 # An editable install, redone when the dependencies change. The mark is set last: an interrupted
 # installation is taken up again.

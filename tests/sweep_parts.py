@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
+
+import numpy as np
+import xarray as xr
 
 import movingfrf as mf
 from movingfrf.scenarios.template import template
@@ -30,3 +34,31 @@ def command(*arguments, **how):
         check=False,
         **how,
     )
+
+
+def table_of(axes, *, design=None, measure="dynamic_load_coefficient", **values):
+    """Make a table as `sweep` returns it, of one measure at contacts `front` and `rear` (and of others) by hand.
+
+    Axes are lists of values; of a design its keys. Values are arrays over the axes, by the name of the contact.
+    """
+    dims = ["sample"] if design else list(axes)
+    shape = [len(next(iter(axes.values())))] if design else [len(each) for each in axes.values()]
+    coords = {"sample": np.arange(shape[0])} if design else {}
+    for name, along in axes.items():
+        words = {"long_name": f"run.{name}", **({"units": "m/s"} if name == "speed" else {})}
+        kind = object if isinstance(along[0], str) else None
+        coords[name] = ("sample" if design else name, np.array(along, kind), words)
+    each = np.stack([np.broadcast_to(np.asarray(one, float), shape) for one in values.values()], axis=-1)
+    place = "dof" if "acceleration" in measure else "contact"
+    coords[f"{place}_name"] = (place, np.array(list(values), object))
+    if place == "dof":
+        coords["dof_unit"] = (place, np.array(["rad" if name == "pitch" else "m" for name in values], object))
+    units = {"contact": "N", "dof": "m/s2 or rad/s2"}[place] if measure != "dynamic_load_coefficient" else "1"
+    status = np.where(np.isfinite(each).any(axis=-1), "", "unstable").astype(object)
+    variables = {
+        measure: ((*dims, place), each, {"units": units, "long_name": measure}),
+        "status": (dims, status),
+        "findings": (dims, np.full(shape, "", object)),
+    }
+    attrs = {"kind": "sweep", "findings": "[]", "axes": "[]"}
+    return xr.Dataset(variables, coords, attrs | ({"design": json.dumps(design)} if design else {}))

@@ -10,7 +10,7 @@ import scipy.stats
 import xarray as xr
 
 import movingfrf as mf
-from movingfrf.studies.sweep.page import render
+from movingfrf.studies.sweep.page.page import render
 from tests.sweep_parts import command, scenario_in
 
 pytestmark = pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
+from movingfrf.commands.main import main
 from movingfrf.scenarios.reading import parse_scenario
 from movingfrf.scenarios.template import template
 
@@ -73,6 +74,38 @@ def test_three_speeds_example(tmp_path):
     alone = mf.simulate(road, lorry, profile, speed=80 / 3.6, duration=15.0, start=20.0, time_step=step)
     np.testing.assert_allclose(coefficients, mf.dynamic_load_coefficient(alone), rtol=1e-9)
     assert 0.1 < float(coefficients.max()) < 0.3
+
+
+def test_network_example(tmp_path):
+    """The road that is loaded most, of class B, is so by the journey by itself as well."""
+    example = loaded("network")
+    example.surveyed(tmp_path, 4)
+    table = example.loaded(tmp_path)
+    assert dict(table.sizes) == {"file": 4, "vehicle": 3, "contact": 5}
+    worst = example.most_loaded(table)[0]
+    truck = table.dynamic_load_coefficient.sel(file=worst.file).max("contact").idxmax("vehicle")
+    lorry = mf.catalogue(str(truck.values))
+    road = mf.track(mf.EulerBernoulliBeam(1.573e7, 711.9), mf.Spring(8.0e6, 3.0e4))
+    profile = mf.read_profile(tmp_path / str(worst.file.values)).profile
+    alone = mf.simulate(road, lorry, profile, speed=80 / 3.6, duration=10.0, start=20.0, time_step=2e-3)
+    assert float(worst) == pytest.approx(mf.dynamic_load_coefficient(alone).max(), rel=1e-9)
+    assert str(worst.file.values) in ("profiles/001.csv", "profiles/003.csv")
+
+
+def test_the_agency_s_page(tmp_path):
+    """The file and the line of docs/sweeps.md lead to what the example says, and to a page that says it."""
+    text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
+    (scenario,) = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    (line,) = re.findall(r"    movingfrf (sweep lorry.toml .*?)\n\n", text, re.DOTALL)
+    (tmp_path / "lorry.toml").write_text(scenario, encoding="utf-8")
+    mf.write_profile(mf.realise(mf.IsoRoad.of_class("B"), length=500.0, seed=1), tmp_path / "road.csv")
+    words = line.replace("\\\n", " ").replace("lorry.toml", str(tmp_path / "lorry.toml")).split()
+    assert not main(words)
+    expected = loaded("three_speeds").compared(tmp_path / "road.csv")
+    page = (tmp_path / "out" / "lorry-sweep" / "report.html").read_text(encoding="utf-8")
+    largest = float(expected.dynamic_load_coefficient.max())
+    assert f"Largest: {largest:.4f}, at axle 1, speed 80 km/h." in page
+    assert page.count("<figure") == 3
 
 
 @pytest.mark.skipif(not PAVED_ROAD.exists(), reason=f"the surveyed profile {PAVED_ROAD.name} is not there")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -13,6 +14,9 @@ from movingfrf.reports.figures import drawn_svg
 from movingfrf.reports.profile import render as profile_page
 from movingfrf.reports.random import render as random_page
 from movingfrf.reports.result import render
+from movingfrf.studies.sweep.page.limits import Limit
+from movingfrf.studies.sweep.page.page import render as sweep_render
+from tests.sweep_parts import table_of
 
 ROAD = mf.track(mf.EulerBernoulliBeam(bending_stiffness=1.573e7, mass=711.9), mf.Spring(stiffness=8e6, damping=3e4))
 SPECTRUM = mf.IsoRoad.of_class("B", band=(0.01, 3.0))
@@ -52,7 +56,45 @@ def measured_page():
     return profile_page(describe_profile(road), understood="", title="a")
 
 
-PAGES = [vehicle_page, smooth_page, coach_page, loads_page, random_road_page, measured_page]
+def sweep_page(**axes):
+    shape = [len(each) for each in axes.values()]
+    values = np.random.default_rng(0).random(shape)
+    limits = [Limit("dynamic_load_coefficient", 0.5)]
+    return sweep_render(table_of(axes, front=values, rear=0.5 * values), "a", "", limits)
+
+
+def sweep_curves_page():
+    return sweep_page(speed=np.linspace(5.0, 35.0, 9), vehicle=["half_truck", "golden_car", "tractor_semitrailer"])
+
+
+def sweep_map_page():
+    return sweep_page(speed=np.linspace(5.0, 35.0, 9), tyre_stiffness=np.linspace(3e6, 4e6, 6))
+
+
+def sweep_dots_page():
+    return sweep_page(vehicle=["half_truck", "profiles/of/the/whole/network/road_0001.csv"], seed=list(range(5)))
+
+
+def sweep_design_page():
+    plan = mf.design({f"run.{key}": (3e6, 4e6) for key in "abc"}, samples=16, kind="saltelli")
+    keys = dict(zip(("tyre_stiffness", "suspension_damping", "speed"), plan.values.T, strict=True))
+    drawn = plan.drawn | {"paths": [f"run.{key}" for key in keys]}
+    table = table_of(keys, design=drawn, front=plan.values @ [1e-8, 2e-8, 3e-8])
+    return sweep_render(table, "a", "", [Limit("dynamic_load_coefficient", 0.2)])
+
+
+PAGES = [
+    vehicle_page,
+    smooth_page,
+    coach_page,
+    loads_page,
+    random_road_page,
+    measured_page,
+    sweep_curves_page,
+    sweep_map_page,
+    sweep_dots_page,
+    sweep_design_page,
+]
 
 
 @pytest.fixture

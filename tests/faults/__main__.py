@@ -152,6 +152,7 @@ def selection(fault: Fault | None) -> list[str]:
     if file.startswith("studies/sweep") or fault in faults_of("sweeps"):
         return [
             "tests/test_roads_by_seed.py",
+            "tests/test_sweep_page.py",
             "tests/test_sweep.py",
             "tests/test_designs.py",
             "tests/test_cluster.py",

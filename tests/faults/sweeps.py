@@ -107,9 +107,9 @@ FAULTS = [
     ),
     Fault(
         "worst where it is best",
-        "studies/sweep/page.py",
-        "np.nanargmin(seen.values) if seen.smallest else np.nanargmax",
-        "np.nanargmax(seen.values) if seen.smallest else np.nanargmin",
+        "studies/sweep/page/seen.py",
+        "np.nanargmin(self.worst) if self.below else np.nanargmax",
+        "np.nanargmax(self.worst) if self.below else np.nanargmin",
     ),
     Fault(
         "unit of another degree of freedom",
@@ -172,4 +172,64 @@ FAULTS = [
         "if False:",
     ),
     Fault("files of another folder", "scenarios/variants.py", "_from_here(tables[name], there)", "tables[name]"),
+    Fault(
+        "crossed at the solved case", "studies/sweep/page/answers.py", "share = over[within] / (", "share = 0 / ("
+    ),
+    Fault(
+        "below for above",
+        "studies/sweep/page/seen.py",
+        "if self.below else values >",
+        "if not self.below else values >",
+    ),
+    Fault(
+        "what has no answer within limits",
+        "studies/sweep/page/answers.py",
+        "or not np.isfinite(over[outside])",
+        "or False",
+    ),
+    Fault(
+        "limit of another unit", "studies/sweep/page/seen.py", "value = scale * limit.value", "value = limit.value"
+    ),
+    Fault(
+        "another contact limited",
+        "studies/sweep/page/seen.py",
+        "np.where(places == limit.place, values",
+        "np.where(places != limit.place, values",
+    ),
+    Fault("rotations felt as motions", "studies/sweep/page/seen.py", "np.where(turning, np.nan, values)", "values"),
+    Fault(
+        "best of what is not drawn",
+        "studies/sweep/page/choice.py",
+        "np.nanmin(turned, axis=-1) if below else np.nanmax",
+        "np.nanmax(turned, axis=-1) if below else np.nanmin",
+    ),
+    Fault(
+        "exchanged samples counted",
+        "studies/sweep/page/samples.py",
+        'slice(2 * int(drawn["samples"]) if',
+        "slice(None if",
+    ),
+    Fault(
+        "certain shares", "studies/sweep/page/shares.py", "rng.integers(base, size=base)", "rng.permutation(base)"
+    ),
+    Fault(
+        "means of what is missing",
+        "studies/sweep/page/reaches.py",
+        "np.isfinite(lines).all(axis=0)",
+        "np.isfinite(lines).any(axis=0)",
+    ),
+    Fault(
+        "variance that classes make",
+        "studies/sweep/page/samples.py",
+        "within / (values.size - classes)",
+        "within / (values.size - 1)",
+    ),
+    Fault(
+        "map on its side",
+        "studies/sweep/page/choice.py",
+        "for dim in (chosen.along, chosen.across) if dim]",
+        "for dim in (chosen.across, chosen.along) if dim]",
+    ),
+    Fault("files in any order", "studies/sweep/words.py", "found = sorted(name for", "found = list(name for"),
+    Fault("files from elsewhere", "studies/sweep/words.py", "root_dir=folder", "root_dir=None"),
 ]

@@ -11,8 +11,6 @@ import numpy as np
 # A rate [1/s] or a share below this stands for never [a convention].
 NEVER = 1e-12
 
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
 # Curves in one figure beyond which nobody can tell one from another; the palette has as many colours.
 MOST_CURVES = 6
 
@@ -46,7 +44,18 @@ def number(value: float, digits: int = 4) -> str:
     if -4 < power < 6:
         rounded = float(f"{mantissa}e{power}")
         return f"{rounded:.{max(digits - 1 - power, 0)}f}".replace("-", "−")
-    return f"{mantissa} × 10{str(power).translate(SUPERSCRIPTS)}".replace("-", "−")
+    return f"{mantissa} × 10{raised(str(power))}".replace("-", "−")
+
+
+def raised(exponent: str) -> str:
+    """Write an exponent in raised digits.
+
+    Examples
+    --------
+    >>> "10" + raised("-3")
+    '10⁻³'
+    """
+    return exponent.translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
 def plain(value: float) -> str:

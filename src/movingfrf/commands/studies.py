@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from movingfrf._basics import wording
 from movingfrf._basics.checks import ValidityWarning, checking
-from movingfrf.commands.console import Stages, plain_console, print_findings, print_tables
+from movingfrf.commands.console import Stages, listing, plain_console, print_findings, print_tables
 
 
 def compare(
@@ -127,6 +127,7 @@ def sweep(
     design: str = "sobol",
     seed: int = 0,
     time_step: float | None = None,
+    limit: Annotated[list[str] | None, Parameter(negative=())] = None,
     part: str | None = None,
     workers: int | None = None,
     cluster: str | None = None,
@@ -143,8 +144,9 @@ def sweep(
         The scenario.
     over
         What varies: run.speed=10,20,30, or first:last:count as run.speed=5:35:61, or first:last for whole numbers
-        as roughness.seed=0:99; once for each axis. Keys that vary together have commas between them and their
-        values semicolons: vehicle.tyre_stiffness.0,vehicle.tyre_stiffness.1=3e6,4e6;3.5e6,4.5e6.
+        as roughness.seed=0:99, or the files that match, as roughness=profiles/*.csv; once for each axis. Keys that
+        vary together have commas between them and their values semicolons:
+        vehicle.tyre_stiffness.0,vehicle.tyre_stiffness.1=3e6,4e6;3.5e6,4.5e6.
     measures
         Names with commas between them, as contact_force_rms,dynamic_load_coefficient; all by default.
     at_random
@@ -157,6 +159,10 @@ def sweep(
         Of the samples.
     time_step
         Step in place of the scenario's, in seconds.
+    limit
+        What a measure is not to pass, in its unit, as dynamic_load_coefficient=0.2, or of one contact or degree of
+        freedom weighted_acceleration_rms.body=0.5; the page says where it does. No part of the sweep: others may be
+        asked of what is solved.
     part
         Which part of the cases, as 3/64: for jobs of an array. A call without it then solves what is missing, and
         writes the tables.
@@ -177,7 +183,9 @@ def sweep(
         from movingfrf._basics.toml_file import as_toml
         from movingfrf.studies.sweep.design import design as drawn
         from movingfrf.studies.sweep.files import as_csv
-        from movingfrf.studies.sweep.page import findings, render, tables
+        from movingfrf.studies.sweep.page.limits import limits_in
+        from movingfrf.studies.sweep.page.page import answers, render
+        from movingfrf.studies.sweep.page.tables import findings, tables
         from movingfrf.studies.sweep.plan import plan_of
         from movingfrf.studies.sweep.sweep import gathered, swept
         from movingfrf.studies.sweep.words import axes_in, part_in, ranges_in
@@ -189,8 +197,13 @@ def sweep(
         which = (1, 1) if part is None else part_in(part)
         names = None if measures is None else [name.strip() for name in measures.split(",") if name.strip()]
         response = "random" if at_random else "simulate"
-        axes = axes_in(over) if samples is None else drawn(ranges_in(over), samples=samples, kind=design, seed=seed)
+        axes = (
+            axes_in(over, file.parent)
+            if samples is None
+            else drawn(ranges_in(over), samples=samples, kind=design, seed=seed)
+        )
         plan = plan_of(file, axes, measures=names, response=response, time_step=time_step)
+        limits = limits_in(limit or [], plan)
         folder = output if output is not None else file.parent / "out" / f"{plan.name}-sweep"
         kept = swept(plan, folder, part=which, workers=processes, cluster=cluster, progress=stages.report)
         table = None
@@ -203,7 +216,7 @@ def sweep(
             with replacing(folder) as files:
                 files |= {"sweep.nc": as_netcdf(table), "table.csv": as_csv(table)}
                 stages.report("report.html", 0.0)
-                files["report.html"] = render(table, f"{plan.name}: sweep", as_toml(plan.tables))
+                files["report.html"] = render(table, f"{plan.name}: sweep", as_toml(plan.tables), limits)
     if table is None:
         missing = len(kept.missing())
         console.print(f"part {part} is solved; {wording.count(missing, 'chunk')} of other parts not yet")
@@ -211,7 +224,7 @@ def sweep(
     cases = table.status.size
     without = int((table.status.values != "").sum())
     console.print(f"{wording.count(cases, 'case')}, {without or 'none'} without an answer")
-    print_tables(console, tables(table))
+    print_tables(console, [listing("Answers", answers(table, limits)), *tables(table, limits)])
     print_findings(console, findings(table))
     for name in ("report.html", "sweep.nc", "table.csv"):
         console.print(f"wrote {folder / name}", soft_wrap=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from movingfrf._basics.wording import SUPERSCRIPTS
+from movingfrf._basics.wording import raised
 from movingfrf.reports.axes import legend_rows
 
 if TYPE_CHECKING:
@@ -174,4 +174,4 @@ def plain_power(label: str) -> str:
     ('10⁻³', '2×10⁰')
     """
     text = re.sub(r"\$|\\mathdefault|[{}]", "", label.replace(r"\times", "×"))
-    return re.sub(r"\^([-−\d]+)", lambda found: found.group(1).replace("−", "-").translate(SUPERSCRIPTS), text)
+    return re.sub(r"\^([-−\d]+)", lambda found: raised(found.group(1).replace("−", "-")), text)

@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from movingfrf.reports.figures import Illustration
 from movingfrf.reports.tables import Setting, Table
+
+
+class Answer(NamedTuple):
+    """What is asked, and what comes out."""
+
+    asks: str
+    said: str
 
 
 def page(
@@ -21,6 +29,7 @@ def page(
     method: Sequence[str],
     scenario: str,
     measures: str = "Measures",
+    answers: Sequence[Answer] = (),
 ) -> str:
     """Put a page together.
 
@@ -48,6 +57,8 @@ def page(
         Text of the scenario.
     measures : str
         Heading of the tables.
+    answers : sequence of Answer
+        What the page says above all.
 
     Returns
     -------
@@ -67,6 +78,7 @@ def page(
         method=method,
         scenario=scenario,
         measures=measures,
+        answers=answers,
     )
 
 

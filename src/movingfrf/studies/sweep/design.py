@@ -15,6 +15,7 @@ from movingfrf._basics.arrays import FloatArray
 from movingfrf._basics.checks import checking, shown
 from movingfrf._basics.values import Value
 from movingfrf._basics.wording import count
+from movingfrf.studies.sweep.files import measures_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -180,7 +181,6 @@ def sensitivity(table: xr.Dataset, measure: str) -> xr.Dataset:
     (2010) 259-270.
     """
     import xarray as xr
-    from scipy.stats import sobol_indices
 
     if getattr(table, "attrs", {}).get("kind") != "sweep":
         raise ValueError(f"table must be what sweep returned, got {shown(table)}")
@@ -189,8 +189,7 @@ def sensitivity(table: xr.Dataset, measure: str) -> xr.Dataset:
         how = f"a {drawn['kind']} design" if drawn else "axes"
         raise ValueError(f"sensitivity needs a sweep of a saltelli design, got one of {how}")
     with checking() as check:
-        names = [str(name) for name in table.data_vars if name not in ("status", "findings")]
-        measure = check.choice("measure", measure, names)
+        measure = check.choice("measure", measure, measures_in(table))
     without = int((table.status.values != "").sum())
     if without:
         raise ValueError(
@@ -201,18 +200,7 @@ def sensitivity(table: xr.Dataset, measure: str) -> xr.Dataset:
     parts = values.reshape(len(keys) + 2, base, -1)
     first, total = (np.full((len(keys), values.shape[1]), np.nan) for _ in range(2))
     for place in range(values.shape[1]):
-        # What is the same but for rounding has no variance to share [1e-12 to 1e-6].
-        if np.ptp(parts[:, :, place]) <= 1e-9 * np.abs(parts[:, :, place]).max():
-            continue
-        found = sobol_indices(
-            func={
-                "f_A": parts[None, 0, :, place],
-                "f_B": parts[None, 1, :, place],
-                "f_AB": parts[2:, None, :, place],
-            },
-            n=base,
-        )
-        first[:, place], total[:, place] = np.ravel(found.first_order), np.ravel(found.total_order)
+        first[:, place], total[:, place] = shares_of(parts[:, :, place])
     dims = ("key", str(table[measure].dims[-1]))
     coordinates: dict[str, Any] = {"key": np.array(keys, object)}
     coordinates |= {name: table[name] for name in (dims[1], f"{dims[1]}_name") if name in table.coords}
@@ -229,3 +217,27 @@ def sensitivity(table: xr.Dataset, measure: str) -> xr.Dataset:
         coordinates,
         {"title": f"Sensitivity of {measure}", "movingfrf_sweep": table.attrs["axes"]},
     )
+
+
+def shares_of(parts: FloatArray) -> FloatArray:
+    """Say how much of the variance of some values is due to which key: Sobol indices.
+
+    Parameters
+    ----------
+    parts : ndarray, shape (key + 2, sample)
+        Values of a `saltelli` design: of the first samples, of the second ones, and of the first with one key each
+        of the second.
+
+    Returns
+    -------
+    ndarray, shape (2, key)
+        First-order and total index; nan where nothing varies.
+    """
+    from scipy.stats import sobol_indices
+
+    # What is the same but for rounding has no variance to share [1e-12 to 1e-6].
+    if np.ptp(parts) <= 1e-9 * np.abs(parts).max():
+        return np.full((2, len(parts) - 2), np.nan)
+    given = {"f_A": parts[None, 0], "f_B": parts[None, 1], "f_AB": parts[2:, None]}
+    found = sobol_indices(func=given, n=parts.shape[1])
+    return np.array([np.ravel(found.first_order), np.ravel(found.total_order)])

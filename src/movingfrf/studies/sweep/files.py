@@ -23,8 +23,8 @@ def as_csv(table: xr.Dataset) -> str:
     Returns
     -------
     str
-        A line of heads, as `contact_force_rms front [N]`, and one for each case: values of the axes, measures, why
-        it has no answer, what is to be known of it.
+        A line of heads, as `contact_force_rms front [N]`, and one for each case: values of the axes, measures, the
+        step in time, why it has no answer, what is to be known of it.
     """
     dims = table.status.dims
     shape = tuple(table.sizes[dim] for dim in dims)
@@ -33,22 +33,28 @@ def as_csv(table: xr.Dataset) -> str:
         (with_unit(name, table[name]), np.broadcast_to(_spread(table[name], dims), shape).ravel())
         for name in varied
     ]
-    for name, values in table.data_vars.items():
-        if values.dims == dims:
-            continue
+    for name in measures_in(table):
+        values = table[name]
         place = str(values.dims[-1])
         called, unit = _called(table, place), values.attrs.get("units", "1")
         for number, word in enumerate(called):
             here = _unit(table, unit, number)
             head = f"{name} {word}{'' if here == '1' else f' [{here}]'}"
             columns.append((head, values.values[..., number].ravel()))
-    columns += [(name, table[name].values.ravel()) for name in ("status", "findings")]
+    others = [name for name in ("time_step", "status", "findings") if name in table]
+    columns += [(with_unit(name, table[name]), table[name].values.ravel()) for name in others]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([head for head, _ in columns])
     for row in zip(*(values for _, values in columns), strict=True):
         writer.writerow([_cell(value) for value in row])
     return text.getvalue()
+
+
+def measures_in(table: xr.Dataset) -> list[str]:
+    """Name what a sweep has measured: what there is of each contact or degree of freedom, and no history."""
+    dims = table.status.dims
+    return [str(name) for name, values in table.data_vars.items() if len(values.dims) == len(dims) + 1]
 
 
 def with_unit(words: str, values: xr.DataArray) -> str:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from glob import glob, has_magic
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,15 +13,17 @@ import numpy as np
 from movingfrf._basics.toml_file import tables_of
 
 
-def axes_in(lines: Iterable[str]) -> dict[Any, list[Any]]:
+def axes_in(lines: Iterable[str], folder: Path = Path()) -> dict[Any, list[Any]]:
     """Understand axes.
 
     Parameters
     ----------
     lines : iterable of str
         Each `KEY=VALUES`. Values have commas between them; `first:last:count` are so many numbers, the last one
-        included, `first:last` whole numbers. Keys that vary together have commas between them, their values
-        semicolons: `a,b=1,2,3;10,20,30`.
+        included, `first:last` whole numbers; names with `*`, `?` or `[…]` the files that match, sorted. Keys that
+        vary together have commas between them, their values semicolons: `a,b=1,2,3;10,20,30`.
+    folder : Path
+        Folder to which names of files are relative.
 
     Returns
     -------
@@ -29,7 +33,7 @@ def axes_in(lines: Iterable[str]) -> dict[Any, list[Any]]:
     Raises
     ------
     ValueError
-        If a line is none, with what is wrong.
+        If a line is none, with what is wrong, or no file matches.
 
     Examples
     --------
@@ -46,7 +50,8 @@ def axes_in(lines: Iterable[str]) -> dict[Any, list[Any]]:
         keys = tuple(each.strip() for each in key.split(","))
         if not equals or not all(keys) or not values.strip():
             raise _refused(line)
-        columns = [_values(line, each) for each in values.split(";")] if len(keys) > 1 else [_values(line, values)]
+        columns = [_values(line, each) for each in (values.split(";") if len(keys) > 1 else [values])]
+        columns = [[one for value in column for one in _matching(line, value, folder)] for column in columns]
         if len(columns) != len(keys):
             raise ValueError(f"--over {line} must have values for {len(keys)} keys, with ; between them")
         if len({len(column) for column in columns}) > 1:
@@ -80,6 +85,16 @@ def _values(line: str, text: str) -> list[Any]:
     if len(count) > 1 or not isinstance(count[0], int) or count[0] < 1 or not math.isfinite(last - first):
         raise _refused(line)
     return np.linspace(first, last, count[0]).tolist()
+
+
+def _matching(line: str, value: Any, folder: Path) -> list[Any]:
+    """Put the files that match in the place of a pattern; what is none stays."""
+    if not (isinstance(value, str) and has_magic(value)):
+        return [value]
+    found = sorted(name for name in glob(value, root_dir=folder, recursive=True) if (folder / name).is_file())
+    if not found:
+        raise ValueError(f"--over {line}: no file matches {value} in {folder.resolve()}")
+    return found
 
 
 def _number(text: str) -> int | float:
