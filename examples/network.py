@@ -31,7 +31,6 @@ file = "profiles/001.csv"
 speed_kmh = 80.0
 duration = 10.0
 start = 20.0      # m
-time_step = 2e-3  # s
 """
 
 

@@ -185,9 +185,13 @@ def test_workers_that_cannot_be_used(given, tmp_path):
     shutil.copytree(SOURCE, other, ignore=shutil.ignore_patterns("__pycache__"))
     version = other / "movingfrf" / "_basics" / "version.py"
     version.write_text(version.read_text().replace(VERSION, "0.0.7"))
+    # Stands before one that is installed.
+    nothing = tmp_path / "nothing"
+    (nothing / "movingfrf").mkdir(parents=True)
+    (nothing / "movingfrf" / "__init__.py").touch()
     for source, words in (
         (other, f" has movingfrf 0.0.7 in place of {VERSION}"),
-        (tmp_path, "ModuleNotFoundError: No module named 'movingfrf'"),
+        (nothing, "ModuleNotFoundError: No module named 'movingfrf."),
     ):
         with Cluster(tmp_path, workers=0) as cluster:
             cluster.add_worker(source)
