@@ -40,7 +40,7 @@ _one_at_a_time = Lock()
 
 def software() -> dict[str, str]:
     """Tell the versions that the last digits depend on, by name."""
-    found = {"movingfrf": VERSION}
+    found = dict(movingfrf=VERSION)
     for name in ("numpy", "scipy", "numba"):
         try:
             found[name] = version(name)
