@@ -209,6 +209,13 @@ def test_histories(truck, tmp_path):
     assert table.identical(mf.sweep(truck, axes, histories=True, store=tmp_path / "kept"))
 
 
+def test_histories_over_roads(truck):
+    roads = [{"kind": "bump", "height": height, "width": 1.0, "at": 6.0} for height in (0.01, 0.02)]
+    table = mf.sweep(truck, {"roughness": roads}, histories=True)
+    first, second = table.roughness_seen.values
+    np.testing.assert_allclose(2.0 * first, second, atol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("axes", "asked", "words"),
     [

@@ -99,7 +99,7 @@ class Sampling:
     observed: float = 0.4  # [0.2 to 0.4]
     shorter: float = 1e-3  # [1e-5 to 3e-3]
     coarsest: float = 0.02  # [s; 1e-3 to 0.05]
-    at_least: int = 256  # [64 to 1024]
+    at_least: int = 2048  # [512 to 8192: the mean over a record depends by a few steps of it on where it ends]
     # What is seen of a road is remembered for the next vehicle in periods of so many steps at most.
     remembered: int = 2**16  # [2**12 to 2**20: time and memory only]
     # A sampled force jumps where its third differences are those of a jump, up to this share of it, and no others

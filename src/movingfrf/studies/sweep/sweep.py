@@ -258,8 +258,10 @@ def gathered(plan: Plan, kept: Kept) -> xr.Dataset:
                     values = one[name]
                     made[number, : len(values), : values.shape[1]] = values
             words = {"units": of.units, "long_name": of.long_name}
-            variables[name] = ((*dims, *of.dims), made.reshape(*shape, *made.shape[1:]), words)
-    if plan.response == "simulate":
+            # A road may be what varies.
+            shown = f"{name}_seen" if name in coordinates else name
+            variables[shown] = ((*dims, *of.dims), made.reshape(*shape, *made.shape[1:]), words)
+    if plan.response == "simulate" and "time_step" not in coordinates:
         steps = laid(each("steps"), np.full(cases, np.nan))
         variables["time_step"] = (dims, steps, {"units": "s", "long_name": "step in time of what was measured"})
     for name, said in (("status", "why the case has no answer"), ("findings", "what is to be known of the case")):
