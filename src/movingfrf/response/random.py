@@ -64,7 +64,7 @@ TOLERANCES = Tolerances()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Ensemble:
+class Ensemble:
     """All roads of a spectrum, under a vehicle."""
 
     vehicle: Vehicle
@@ -267,7 +267,7 @@ def stationary(
     progress("steady state", 0.0)
     surveyed = survey(system)
     steady = surveyed.steady
-    densities = _densities(system, _Ensemble(vehicle=vehicle, spectrum=spectrum, coherence=coherence, speed=speed))
+    densities = _densities(system, Ensemble(vehicle=vehicle, spectrum=spectrum, coherence=coherence, speed=speed))
     progress("spectral densities", 0.0)
     lines = _resolved(densities, vehicle, _edges(spectrum, speed))
     statistics = _statistics(vehicle, lines, exposure)
@@ -342,7 +342,7 @@ def _outputs(vehicle: Vehicle) -> int:
     return _parts(vehicle)["roughness"].stop
 
 
-def _densities(system: System, road: _Ensemble) -> Callable[[FloatArray], FloatArray]:
+def _densities(system: System, road: Ensemble) -> Callable[[FloatArray], FloatArray]:
     """Spectral densities of all outputs, (frequency, output), as a function of the frequency [Hz]."""
 
     def densities(frequency: FloatArray) -> FloatArray:
