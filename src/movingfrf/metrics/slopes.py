@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -31,7 +31,7 @@ class Records(NamedTuple):
     acceleration: FloatArray
     load: FloatArray  # (contact,) [N]
     sag: FloatArray  # (contact,) [m]
-    units: tuple[str, ...]  # of the degrees of freedom
+    units: Sequence[str]  # of the degrees of freedom
 
 
 def of_rms(record: FloatArray) -> tuple[float, FloatArray]:

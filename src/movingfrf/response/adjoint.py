@@ -1,0 +1,289 @@
+"""How numbers that are made of a response change with vehicle, road and speed: one adjoint solution for all of it.
+
+With z the motion of the vehicle, F the forces at its contacts, 1/k the yielding of these, and d = w − r, w = G F,
+
+    A z + Bᵀ F = 0,   F/k = B z − d,   A = K + iωC − ω²M.
+
+Where vehicle, guideway and road change, so do z, F and w: dA z + dBᵀ F is a force on the vehicle, and what is left
+of (dB) z − d(1/k) F − dG F + dr acts like an elevation of the road. A number that changes by Re Σ (F̄ᴴ dF + w̄ᴴ dw +
+z̄ᴴ dz) is asked the other way round. As A and k are symmetric, the response of the same vehicle to a displacement λ*
+below its contacts and forces z̄* on it, with
+
+    (I + Gᵀ D) λ* = F̄* + Gᵀ (w̄* + what of z̄* comes out at the contacts),
+
+is a motion g* and contact forces δ*, and the number changes by
+
+    Re Σ [ −gᴴ (dA z + dBᵀ F) − δᴴ (dB z − d(1/k) F + dr) + (w̄ + δ)ᴴ dG F ].
+
+Nothing of this is solved for a key of its own: matrices, elevations and moving FRFs are evaluated a little to
+either side of it, where they are smooth. Frequencies, window and truncation are those of the response.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from movingfrf._basics.arrays import ComplexArray, FloatArray
+from movingfrf._basics.remembered import recalled
+from movingfrf.guideways.guideway import Guideway
+from movingfrf.metrics.slopes import Slope
+from movingfrf.response.batches import BATCH, applied, solved
+from movingfrf.response.survey import steady_state
+from movingfrf.response.system import System, Tables
+from movingfrf.response.truncation import Truncation
+from movingfrf.roughness.road import Road
+from movingfrf.vehicles.dynamics import Modes, Part, Quadratic
+from movingfrf.vehicles.journey import Journey
+from movingfrf.vehicles.vehicle import Vehicle
+
+
+class Case(Protocol):
+    """A vehicle on a rough road, as a scenario says it."""
+
+    @property
+    def guideway(self) -> Guideway:
+        """The road or track."""
+        ...
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """The vehicle."""
+        ...
+
+    @property
+    def road(self) -> Road:
+        """The profile, and what it stands for."""
+        ...
+
+    @property
+    def journey(self) -> Journey:
+        """How the vehicle travels."""
+        ...
+
+
+# A derivative: what to sum up, cases near by, each with its weight.
+Stencil = Sequence[tuple[float, Case]]
+
+
+class Wanted(NamedTuple):
+    """By how much numbers change with what a vehicle and a road do, each (number, case, place, frequency)."""
+
+    force: ComplexArray
+    deflection: ComplexArray
+    motion: ComplexArray
+
+
+class Solution(NamedTuple):
+    """What is known of a response; (case, place, frequency)."""
+
+    system: System
+    omega: ComplexArray  # (frequency,) [rad/s]
+    truncation: Truncation
+    force: ComplexArray
+    deflection: ComplexArray  # as far as the guideway gives way
+    motion: ComplexArray
+
+
+def at_rest(system: System, slopes: Sequence[Slope], stencils: Sequence[Stencil]) -> FloatArray:
+    """Say what changes of steady travel add.
+
+    Parameters
+    ----------
+    system : System
+        Vehicle and road.
+    slopes : sequence of Slope
+        How each measure changes with steady travel.
+    stencils : sequence of stencils
+        Cases near by, key by key.
+
+    Returns
+    -------
+    ndarray, shape (measure, key)
+        Derivatives [unit of the measure per unit of the key].
+    """
+    found = np.zeros((len(slopes), len(stencils)))
+    if not any(slope.load or slope.sag for slope in slopes):
+        return found
+    for key, stencil in enumerate(stencils):
+        for weight, case in stencil:
+            near = System.of(case.guideway, case.vehicle, case.journey.speed)
+            steady = steady_state(near, near.at(np.zeros(1, complex)))
+            for number, slope in enumerate(slopes):
+                if slope.load or slope.sag:
+                    load, sag = steady.load[slope.place], steady.deflection[slope.place]
+                    found[number, key] += weight * (slope.load * load + slope.sag * sag)
+    return found
+
+
+class _Matrices(NamedTuple):
+    """How numbers change with the matrices of a vehicle, summed over cases and frequencies."""
+
+    powers: FloatArray  # (3, number, dof, dof): with K, C and M
+    contact_map: FloatArray  # (number, contact, dof)
+    springs: FloatArray  # (number, contact)
+    dashpots: FloatArray  # (number, contact)
+
+    def change(self, stencil: Stencil) -> FloatArray:
+        """Give the derivative of each number along a key, shape (number,)."""
+        total = np.zeros(self.springs.shape[0])
+        for weight, case in stencil:
+            mass, damping, stiffness, contact_map = case.vehicle.matrices
+            springs = np.where(np.isinf(case.vehicle.springs), 0.0, case.vehicle.springs)
+            part = self.springs @ springs + self.dashpots @ case.vehicle.dashpots
+            matrices = stiffness, damping, mass, contact_map
+            for sums, matrix in zip((*self.powers, self.contact_map), matrices, strict=True):
+                part = part + np.tensordot(sums, matrix, axes=2)
+            total += weight * part
+        return total
+
+
+def changes(
+    known: Solution, wanted: Wanted, stencils: Sequence[Stencil], elevation: Callable[[Case], ComplexArray]
+) -> FloatArray:
+    """Say how numbers that are made of a response change along keys.
+
+    Parameters
+    ----------
+    known : Solution
+        The response.
+    wanted : Wanted
+        How each number changes with it.
+    stencils : sequence of stencils
+        Cases near by, key by key.
+    elevation : callable
+        What contacts see of the road in a case, (case, contact, frequency).
+
+    Returns
+    -------
+    ndarray, shape (number, key)
+        Derivatives, steady travel left out.
+    """
+    system, omega, numbers = known.system, known.omega, len(wanted.force)
+    dynamics, contacts, dofs = system.dynamics, system.dynamics.contacts, system.dynamics.dofs
+    found = np.zeros((numbers, len(stencils)))
+    roads = [
+        np.sum([weight * elevation(case) for weight, case in stencil], axis=0) if _differ(stencil, _road) else None
+        for stencil in stencils
+    ]
+    softer = [stencil if _differ(stencil, _track) else None for stencil in stencils]
+    sums = _Matrices(
+        np.zeros((3, numbers, dofs, dofs)),
+        np.zeros((numbers, contacts, dofs)),
+        np.zeros((numbers, contacts)),
+        np.zeros((numbers, contacts)),
+    )
+    reach, kept = known.truncation.reach(omega), known.truncation.taper(omega)
+    rigid = np.isinf(system.vehicle.springs)
+    contact = np.where(rigid, 1.0, system.vehicle.springs)[:, None] + 1j * omega * system.vehicle.dashpots[:, None]
+    yields = ~rigid[:, None] / contact  # a rigid contact stays rigid
+    for some in BATCH.some(omega.size, max(contacts**2, numbers * dofs)):
+        here, share = omega[some], kept[some]
+        force, motion = known.force[..., some], known.motion[..., some]
+        pushed, moved, sagged = (part[..., some] for part in (wanted.force, wanted.motion, wanted.deflection))
+        taken = np.conj(pushed)
+        gives = bool(some.start < reach)
+        out = _forced(dynamics.alike, here, np.conj(moved), contacts)
+        if gives:
+            frf = np.moveaxis(
+                system.guideway.moving_frf(speed=system.speed, omega=here, **system.vehicle.offsets), 0, -1
+            )
+            frf = share * frf
+            below = out[1].copy()
+            below[..., : sagged.shape[-1]] += np.conj(sagged)
+            taken = taken + applied(frf.swapaxes(0, 1), below)
+            taken = solved(Tables(here, frf, dynamics.stiffness(here)).matrix.swapaxes(0, 1), taken)
+        answered, pressed = dynamics.response(here, taken)
+        answered, pressed = answered + out[0], pressed + out[1]  # conjugates of g and δ
+        s = 1j * here
+        for power, total in enumerate(sums.powers):
+            total -= _summed(answered * s**power, motion)
+        sums.contact_map[:] -= _summed(force, answered, across=True) + _summed(pressed, motion)
+        squeezed = -(pressed * yields[:, some] ** 2 * force).sum(axis=1)
+        sums.springs[:] += squeezed.real.sum(axis=-1)
+        sums.dashpots[:] += (s * squeezed).real.sum(axis=-1)
+        below = pressed.copy()
+        below[..., : sagged.shape[-1]] += np.conj(sagged)
+        for key, (road, tracks) in enumerate(zip(roads, softer, strict=True)):
+            if road is not None:
+                found[:, key] -= (pressed * road[..., some]).real.sum(axis=(1, 2, 3))
+            if tracks is not None and gives:
+                yielding = applied(share * _of_tracks(tracks, here), force)
+                found[:, key] += (below * yielding).real.sum(axis=(1, 2, 3))
+    return found + np.stack([sums.change(stencil) for stencil in stencils], axis=-1)
+
+
+def _summed(left: ComplexArray, right: ComplexArray, *, across: bool = False) -> FloatArray:
+    """Sum products of two places over cases and frequencies: (number, place, place)."""
+    if across:  # the left one has no numbers
+        return np.einsum("cif,ncjf->nij", left, right, optimize=True).real
+    numbers, cases, places, size = left.shape
+    rows = np.moveaxis(left, 1, 2).reshape(numbers * places, cases * size)
+    columns = np.moveaxis(right, 0, 1).reshape(right.shape[1], cases * size)
+    return (rows @ columns.T).real.reshape(numbers, places, -1)
+
+
+def _forced(
+    alike: Sequence[tuple[Part, np.ndarray, np.ndarray]], omega: ComplexArray, force: ComplexArray, contacts: int
+) -> tuple[ComplexArray, ComplexArray]:
+    """Motion, and contact forces, of a vehicle under forces on its degrees of freedom, its contacts held."""
+    motion = np.zeros_like(force)
+    pressed = np.zeros((*force.shape[:-2], contacts, omega.size), complex)
+    if not force.any():
+        return motion, pressed
+    for part, dofs, below in alike:
+        pushed = force[..., dofs, :]
+        free = part.motion.free.T @ pushed
+        modes = recalled(part, "modes under forces", partial(_modes, part))
+        if modes is None:
+            columns = np.moveaxis(free.reshape(-1, *free.shape[-2:]), (2, 1), (0, 1))
+            found = np.linalg.solve(np.moveaxis(part.own.at(omega), -1, 0), columns)
+            moved = np.moveaxis(found, (0, 1), (2, 1)).reshape(free.shape)
+        elif modes.poles.size:
+            entered = modes.entered[0]
+            assert entered is not None
+            moved = modes.shapes @ ((entered @ free) / (1j * omega - modes.poles[:, None]))
+        else:
+            moved = free
+        motion[..., dofs, :] = part.motion.free @ moved
+        pressed[..., below, :] = part.entry.transposed().times(omega, moved) + part.motion.prescribed.T @ pushed
+    return motion, pressed
+
+
+def _modes(part: Part) -> Modes | None:
+    """Poles and residues of P⁻¹ between forces on the free coordinates and these."""
+    free = len(part.own.constant)
+    nothing = np.zeros((free, free))
+    if not free:
+        return None
+    return Modes.of(part.own, Quadratic(np.eye(free), nothing, nothing))
+
+
+def _differ(stencil: Stencil, of: Callable[[Case], tuple[object, ...]]) -> bool:
+    """Tell whether a key changes something."""
+    first, *others = (of(case) for _, case in stencil)
+    return any(other != first for other in others)
+
+
+def _road(case: Case) -> tuple[object, ...]:
+    """Tell what contacts see of the road depends on."""
+    touching = (np.asarray(each).tobytes() for each in case.vehicle.touching.values())
+    return (case.road, case.journey, case.vehicle.across.tobytes(), *touching)
+
+
+def _track(case: Case) -> tuple[object, ...]:
+    """Tell what moving FRFs between contacts depend on."""
+    vehicle = case.vehicle
+    return case.guideway, case.journey.speed, vehicle.positions.tobytes(), vehicle.across.tobytes()
+
+
+def _of_tracks(stencil: Stencil, omega: ComplexArray) -> ComplexArray:
+    """Give the derivative of the moving FRFs between contacts, (contact, contact, frequency)."""
+    found = (
+        weight * case.guideway.moving_frf(speed=case.journey.speed, omega=omega, **case.vehicle.offsets)
+        for weight, case in stencil
+    )
+    return np.moveaxis(np.sum([*found], axis=0), 0, -1)
