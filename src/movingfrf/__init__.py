@@ -126,6 +126,7 @@ _WHERE = {
     "design": "studies.sweep.design",
     "sensitivity": "studies.sweep.design",
     "Design": "studies.sweep.design",
+    "optimise": "studies.optimisation.optimise",
     "export": "results.export",
     "measures": "metrics.measures",
     "assess": "metrics.measures",

@@ -1,0 +1,1 @@
+"""The best values of keys of a scenario, within limits."""
