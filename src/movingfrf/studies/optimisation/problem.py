@@ -312,8 +312,8 @@ def _require_one_road(problem: Problem) -> None:
                 stations.append(case.road.profile.stations)
         if len(stations) == 2 and not np.array_equal(stations[0], stations[1]):
             raise ValueError(
-                f"{key.name} changes the way of the vehicle, and with it the realised road: the best value would be "
-                "that of the roads drawn. Take a profile from a file, or all roads of the spectrum (response "
+                f"{key.name} changes the way of the vehicle, and with it the realised road: the best value would "
+                "be that of the roads drawn. Take a profile from a file, or all roads of the spectrum (response "
                 "'random', on the command line --random)"
             )
 

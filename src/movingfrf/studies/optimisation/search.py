@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from movingfrf.studies.optimisation.problem import Problem
 from movingfrf.studies.sweep.axes import Axes, Axis
 from movingfrf.studies.sweep.plan import Plan
 from movingfrf.studies.sweep.solving import Solved, solved
+
+if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +45,25 @@ class Evaluated(NamedTuple):
     shares: FloatArray  # along the range of each key
     case: Solved
     wanted: FloatArray  # what of it matters, in the order of `Problem.wanted`; nan where it has no answer
+
+
+class Bound(NamedTuple):
+    """What something that matters must not fall below, or exceed."""
+
+    place: int  # of it among all that matters
+    sign: float  # 1: not fall below, −1: not exceed
+    end: float
+    scale: float
+    moves: bool = False  # whether it gives way, by what is made small
+
+    def room(self, wanted: FloatArray, given: float = 0.0) -> float:
+        """Say how far from it something is, in times of its scale; not negative where it is kept."""
+        return self.sign * (float(wanted[self.place]) - self.end) / self.scale + given * self.moves
+
+    def slope(self, slopes: FloatArray, moving: bool) -> FloatArray:
+        """Say how that changes with the keys, and with how far bounds give way."""
+        own: FloatArray = self.sign * slopes[self.place] / self.scale
+        return np.append(own, float(self.moves)) if moving else own
 
 
 class Searcher:
@@ -140,10 +162,10 @@ class Searcher:
         wanted = self.problem.wanted
         return [wanted.index((measure, number)) for number in numbers]
 
-    def margins(self) -> list[tuple[int, float, float, float]]:
-        """Give all limits: what of that which matters, its sign and limit, and the size of this."""
+    def limits(self) -> list[Bound]:
+        """Give all limits."""
         return [
-            (place, sign, end, limit.scale)
+            Bound(place, sign, end, limit.scale)
             for limit in self.problem.limits
             for place in self._places(limit.of.measure, limit.of.numbers)
             for sign, end in ((1.0, limit.low), (-1.0, limit.high))
@@ -152,8 +174,9 @@ class Searcher:
 
     def exceeded(self, tried: Evaluated) -> float:
         """By how much the worst limit is exceeded, as a share of it; nan without an answer."""
-        over = [sign * (end - tried.wanted[place]) / scale for place, sign, end, scale in self.margins()]
-        return float(np.max([*over, 0.0])) if np.isfinite(tried.wanted).all() else np.nan
+        if not np.isfinite(tried.wanted).all():
+            return np.nan
+        return max(0.0, *(-bound.room(tried.wanted) for bound in self.limits()), 0.0)
 
     def order(self, tried: Evaluated) -> tuple[bool, float, float]:
         """Rank cases: those within the limits by what is made small, others by how far off they are."""
@@ -176,7 +199,7 @@ def planned(problem: Problem, values: Sequence[FloatArray]) -> Plan:
     return replace(problem.plan, axes=Axes([axis]))
 
 
-def searched(problem: Problem, starts: int, progress: Progress) -> tuple[Searcher, list[Any]]:
+def searched(problem: Problem, starts: int, progress: Progress) -> tuple[Searcher, list[OptimizeResult]]:
     """Search.
 
     Parameters
@@ -214,7 +237,20 @@ def searched(problem: Problem, starts: int, progress: Progress) -> tuple[Searche
         raise SolveError(
             f"none of {len(ranked)} cases within the ranges has an answer; the first: {ranked[0].case.status[0]}"
         )
-    return searcher, [_downhill(searcher, start, tuned) for start in _spread(ranked, starts, tuned.apart)]
+    limits, aims = searcher.limits(), searcher.aims
+    runs = []
+    if searcher.exceeded(ranked[0]) > tuned.kept:
+        # Into the limits first, or as near as can be.
+        runs.append(_downhill(searcher, ranked[0], tuned, [each._replace(moves=True) for each in limits], 0.0))
+        ranked = sorted(searcher.tried, key=searcher.order)
+        if searcher.exceeded(ranked[0]) > tuned.kept:
+            return searcher, runs
+    size = abs(searcher.aim(ranked[0])) or 1.0
+    if len(aims) > 1:
+        limits += [Bound(place, -1.0, 0.0, size, moves=True) for place in aims]
+    for start in _spread(ranked, starts, tuned.apart):
+        runs.append(_downhill(searcher, start, tuned, limits, -np.inf))
+    return searcher, runs
 
 
 def _spread(ranked: Sequence[Evaluated], count: int, apart: float) -> Iterator[Evaluated]:
@@ -228,69 +264,59 @@ def _spread(ranked: Sequence[Evaluated], count: int, apart: float) -> Iterator[E
             yield tried
 
 
-def _downhill(searcher: Searcher, start: Evaluated, tuned: Search) -> Any:
-    """Go downhill by sequential quadratic programming.
+def _downhill(
+    searcher: Searcher, start: Evaluated, tuned: Search, bounds: Sequence[Bound], least: float
+) -> OptimizeResult:
+    """Go downhill by sequential quadratic programming, within bounds.
 
-    Of several places the largest measure is made small by way of a bound on all of them, which is smooth where the
-    largest is not.
+    Where bounds give way, how far they do is what is made small, down to the least: so is the largest of several
+    measures, by a bound on all of them, which is smooth where the largest is not.
     """
-    from scipy.optimize import minimize
+    from scipy.optimize import OptimizeResult, minimize
 
-    aims, keys = searcher.aims, len(searcher.problem.keys)
+    keys, aim, moving = len(searcher.problem.keys), searcher.aims[0], any(bound.moves for bound in bounds)
     size = abs(searcher.aim(start)) or 1.0
     last = start
 
     def at(x: FloatArray) -> FloatArray:
-        """Give what matters; where there is no answer that of the last case that has one."""
+        """Give what matters; where there is no answer, that of the last case that has one."""
         nonlocal last
         tried = searcher.at(x[:keys])
         last = tried if np.isfinite(tried.wanted).all() else last
-        return tried.wanted
+        return last.wanted
 
-    def penalised(x: FloatArray, value: Callable[[FloatArray], float]) -> float:
-        found = at(x)
-        return value(found) if np.isfinite(found).all() else tuned.impossible * max(abs(value(last.wanted)), 1.0)
+    def slopes(x: FloatArray) -> FloatArray:
+        at(x)
+        return searcher.slopes(last.shares)
 
-    def sloping(x: FloatArray) -> FloatArray:
-        return searcher.slopes(x[:keys] if np.isfinite(at(x)).all() else last.shares)
+    def small(x: FloatArray) -> float:
+        found = x[-1] if moving else float(at(x)[aim] / size)
+        # What is impossible is worse than all else: steps that lead there are made shorter.
+        impossible = not np.isfinite(searcher.at(x[:keys]).wanted).all()
+        return found + tuned.impossible * max(abs(found), 1.0) * impossible
 
-    bounded = len(aims) > 1
-    margins = searcher.margins()
+    def down(x: FloatArray) -> FloatArray:
+        return np.append(np.zeros(keys), 1.0) if moving else slopes(x)[aim] / size
 
-    def bound(x: FloatArray) -> FloatArray:
-        """Give what must not be negative."""
-        found = at(x)
-        found = found if np.isfinite(found).all() else last.wanted
-        limits = [sign * (found[place] - end) / scale for place, sign, end, scale in margins]
-        return np.array([*limits, *(x[-1] - found[aims] / size if bounded else ())])
+    def room(x: FloatArray) -> FloatArray:
+        wanted = at(x)
+        return np.array([bound.room(wanted, x[-1]) for bound in bounds])
 
-    def bound_slopes(x: FloatArray) -> FloatArray:
-        each = sloping(x)
-        rows = [sign * each[place] / scale for place, sign, _, scale in margins]
-        if bounded:
-            rows = [np.append(row, 0.0) for row in rows] + [np.append(-each[aim] / size, 1.0) for aim in aims]
-        return np.array(rows)
+    def rooms(x: FloatArray) -> FloatArray:
+        each = slopes(x)
+        return np.array([bound.slope(each, moving) for bound in bounds])
 
-    def aim(x: FloatArray) -> float:
-        return penalised(x, (lambda found: x[-1]) if bounded else (lambda found: float(found[aims[0]] / size)))
-
-    def aim_slopes(x: FloatArray) -> FloatArray:
-        return np.append(np.zeros(keys), 1.0) if bounded else sloping(x)[aims[0]] / size
-
-    within = [(0.0, 1.0)] * keys + [(None, None)] * bounded
-    constraints = [{"type": "ineq", "fun": bound, "jac": bound_slopes}] if margins or bounded else []
+    given = [max(-bound.room(start.wanted) for bound in bounds if bound.moves)] if moving else []
     try:
         return minimize(
-            aim,
-            np.append(start.shares, [searcher.aim(start) / size] * bounded),
-            jac=aim_slopes,
-            bounds=within,
-            constraints=constraints,
+            small,
+            np.append(start.shares, given),
+            jac=down,
+            bounds=[(0.0, 1.0)] * keys + [(least, None)] * moving,
+            constraints=[{"type": "ineq", "fun": room, "jac": rooms}] if bounds else [],
             method="SLSQP",
             options={"maxiter": tuned.steps, "ftol": tuned.accuracy},
         )
     except (ValueError, SolveError) as refused:
         # A derivative needs cases to either side of a value, and one of them is impossible.
-        from scipy.optimize import OptimizeResult
-
         return OptimizeResult(x=last.shares, success=False, message=str(refused), nit=0)
