@@ -23,6 +23,7 @@ COMMANDS = (
     ("scenarios", "vehicles", "run", "random", "measure"),
     ("export", "export"),
     ("studies", "compare", "sweep", "paper"),
+    ("optimise", "optimise"),
     ("profiles", "profile", "convert"),
 )
 for _module, *_names in COMMANDS:

@@ -90,8 +90,6 @@ def optimise(
 
     Examples
     --------
-    On a road of waviness 2 that nothing bounds, a mass m on a spring k vibrates least with the damping √(k m):
-
     >>> import movingfrf as mf
     >>> tables = {
     ...     "guideway": {"kind": "rigid_guideway"},
@@ -105,30 +103,56 @@ def optimise(
     >>> best.success, best.scenario.case.vehicle.dof_names
     (True, ('body', 'wheel'))
     """
+    problem = problem_of(scenario, over, minimise, contact=contact, dof=dof, where=where, response=response)
+    return optimised(problem, starts=starts, progress=progress)
+
+
+def optimised(problem: Problem, *, starts: int = 3, progress: Progress = silent) -> OptimizeResult:
+    """Find the best values.
+
+    Parameters
+    ----------
+    problem : Problem
+        What is asked.
+    starts : int
+        From how many samples the search goes downhill.
+    progress : callable
+        Called with the name of a stage and the fraction of it that is done.
+
+    Returns
+    -------
+    OptimizeResult
+        As `optimise` returns it.
+
+    Raises
+    ------
+    ValueError
+        If `starts` is no whole number above zero.
+    SolveError
+        If no case that was tried has an answer.
+    """
     from scipy.optimize import OptimizeResult
 
     with checking() as check:
         starts = check.whole("starts", starts, least=1)
-    problem = problem_of(scenario, over, minimise, contact=contact, dof=dof, where=where, response=response)
     searcher, runs = searched(problem, starts, progress)
     best = searcher.best()
-    values = problem.values(best.shares)
-    kept = not searcher.order(best)[0]
+    values = problem.values(best.shares).tolist()
+    # Status 8: no shorter step leads downhill, as where two peaks of a record are equal.
     ended = any(run.success or run.get("status") == 8 for run in runs)
-    found = _findings(searcher, best, values.tolist(), ended)
+    found = _findings(searcher, best, values, ended)
     table = tabled(problem, searcher)
     table.attrs["findings"] = with_more(table.attrs["findings"], warned(found))
     return OptimizeResult(
-        x=values,
+        x=problem.values(best.shares),
         fun=searcher.aim(best),
-        success=bool(kept and ended),
-        message=" ".join([_message(searcher, best, values.tolist()), *(one.message for one in found)]),
+        success=bool(ended and not searcher.order(best)[0]),
+        message=_message(searcher, best, values),
         nfev=len(searcher.tried),
         njev=searcher.gradients,
         nit=sum(int(run.nit) for run in runs),
-        scenario=problem.plan.variants.at(problem.named(values.tolist())),
+        scenario=problem.plan.variants.at(problem.named(values)),
         table=table,
-        problem=problem,
     )
 
 
@@ -141,8 +165,16 @@ def _message(searcher: Searcher, best: Evaluated, values: list[float]) -> str:
     own = problem.own
     given = searcher.at(own) if own is not None else None
     before = "" if given is None or given.case.status[0] else f", {number(searcher.aim(given))} as the scenario was"
-    tried = count(len(searcher.tried), "case")
-    return f"{aim}{before}, with {said}; {tried} and {count(searcher.gradients, 'gradient')} computed."
+    active = [
+        f"{limit.of.measure} of {name} is at its limit, {limit.words}"
+        for limit in problem.limits
+        for place, name in zip(limit.of.numbers, limit.of.names, strict=True)
+        for value in (float(best.wanted[problem.wanted.index((limit.of.measure, place))]),)
+        # So near that it is the limit that keeps it from being better [1e-5 to 1e-3].
+        if abs(max(limit.low - value, value - limit.high)) <= 1e-4 * limit.scale
+    ]
+    tried = f"{count(len(searcher.tried), 'case')} and {count(searcher.gradients, 'gradient')} were computed"
+    return f"{'; '.join([f'{aim}{before}, with {said}', *active, tried])}."
 
 
 def _findings(searcher: Searcher, best: Evaluated, values: list[float], ended: bool) -> list[Finding]:

@@ -41,9 +41,10 @@ class Key(NamedTuple):
 
     def at(self, share: float) -> float:
         """Value so far along the range, from 0 to 1."""
-        if self.by_factors:
-            return float(np.clip(self.low * (self.high / self.low) ** share, self.low, self.high))
-        return float(np.clip(self.low + share * (self.high - self.low), self.low, self.high))
+        rises = self.by_factors
+        value = self.low * (self.high / self.low) ** share if rises else self.low + share * (self.high - self.low)
+        # So many digits that the scenario's own value comes back as it was written [10 to 13].
+        return min(max(float(f"{value:.12g}"), self.low), self.high)
 
     def share(self, value: float) -> float:
         """Give how far along the range a value lies."""
@@ -127,13 +128,13 @@ class Problem(NamedTuple):
     @property
     def own(self) -> FloatArray | None:
         """How far along the ranges the scenario's own values lie; None if it has none there."""
-        found = [_own(self.plan.tables, key.paths[0]) for key in self.keys]
-        within = [
-            key.share(value)
-            for key, value in zip(self.keys, found, strict=True)
-            if value is not None and key.low <= value <= key.high
-        ]
-        return np.array(within) if len(within) == len(self.keys) else None
+        within = []
+        for key in self.keys:
+            first, *others = (_own(self.plan.tables, path) for path in key.paths)
+            if first is None or not key.low <= first <= key.high or any(other != first for other in others):
+                return None
+            within.append(key.share(first))
+        return np.array(within)
 
 
 def _own(tables: Any, path: str) -> float | None:
