@@ -5,7 +5,7 @@
 
 import movingfrf as mf
 
-COMFORT = 0.28  # weighted acceleration of the body, at most [m/s²]
+COMFORT = 0.29  # weighted acceleration of the body, at most [m/s²]
 
 
 def scenario() -> dict:

@@ -161,17 +161,13 @@ def _message(searcher: Searcher, best: Evaluated, values: list[float]) -> str:
     problem = searcher.problem
     said = ", ".join(f"{key.name} = {key.told(value)}" for key, value in zip(problem.keys, values, strict=True))
     unit = problem.plan.way.measures[problem.aim.measure].units.split(" or ")[0]
-    aim = f"{problem.aim.words} is {number(searcher.aim(best))} {'' if unit == '1' else unit}".strip()
+    aim = f"The {problem.aim.words} is {number(searcher.aim(best))} {'' if unit == '1' else unit}".strip()
     own = problem.own
     given = searcher.at(own) if own is not None else None
     before = "" if given is None or given.case.status[0] else f", {number(searcher.aim(given))} as the scenario was"
+    # So near that it is the limit that keeps it from being better [1e-5 to 1e-3].
     active = [
-        f"{limit.of.measure} of {name} is at its limit, {limit.words}"
-        for limit in problem.limits
-        for place, name in zip(limit.of.numbers, limit.of.names, strict=True)
-        for value in (float(best.wanted[problem.wanted.index((limit.of.measure, place))]),)
-        # So near that it is the limit that keeps it from being better [1e-5 to 1e-3].
-        if abs(max(limit.low - value, value - limit.high)) <= 1e-4 * limit.scale
+        f"{bound.words} is at its limit" for bound in searcher.limits() if abs(bound.room(best.wanted)) <= 1e-4
     ]
     tried = f"{count(len(searcher.tried), 'case')} and {count(searcher.gradients, 'gradient')} were computed"
     return f"{'; '.join([f'{aim}{before}, with {said}', *active, tried])}."
@@ -180,13 +176,11 @@ def _message(searcher: Searcher, best: Evaluated, values: list[float]) -> str:
 def _findings(searcher: Searcher, best: Evaluated, values: list[float], ended: bool) -> list[Finding]:
     """Say what is to be known of the best values."""
     problem, found = searcher.problem, []
-    off = []
-    for limit in problem.limits:
-        for place, name in zip(limit.of.numbers, limit.of.names, strict=True):
-            value = float(best.wanted[problem.wanted.index((limit.of.measure, place))])
-            over = max(limit.low - value, value - limit.high) / limit.scale
-            if over > Search().kept:
-                off.append(f"{limit.of.measure} of {name}, {limit.words}, is {number(value)}")
+    off = [
+        f"{bound.words} is {number(float(best.wanted[bound.place]))}"
+        for bound in searcher.limits()
+        if bound.room(best.wanted) < -Search().kept
+    ]
     if off:
         found.append(
             Finding("limits_not_kept", f"No values that were tried keep all limits; nearest: {'; '.join(off)}.")

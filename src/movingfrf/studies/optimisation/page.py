@@ -44,7 +44,7 @@ def render(problem: Problem, best: OptimizeResult, title: str, scenario: str) ->
         figures = [
             illustrated(
                 f"search-{number_}",
-                f"How does {of.words.replace('_', ' ')} depend on the keys?",
+                f"How does the {of.words.replace('_', ' ')} depend on the keys?",
                 "Every case that was tried; a ring is the one that was found, hollow ones break a limit."
                 + ("" if limit is None else f" The limit: {limit.words}."),
                 _figure(problem, best, of, limit),
@@ -143,7 +143,7 @@ def _figure(problem: Problem, best: OptimizeResult, of: Of, limit: Limit | None)
     for one in problem.limits:
         values = table[one.of.measure].values[:, list(one.of.numbers)]
         with np.errstate(invalid="ignore"):
-            slack = 1e-6 * one.scale
+            slack = 1e-6 * np.abs(values)
             kept &= ((values >= one.low - slack) & (values <= one.high + slack)).all(axis=1)
     units = problem.plan.way.measures[of.measure].units.split(" or ")[0]
     for ax, key, along in zip(axes, keys, _values(problem, best), strict=False):

@@ -92,15 +92,10 @@ class Limit(NamedTuple):
     high: float
 
     @property
-    def scale(self) -> float:
-        """A value of its size."""
-        return max(abs(limit) for limit in (self.low, self.high) if math.isfinite(limit)) or 1.0
-
-    @property
     def words(self) -> str:
         """The limit."""
-        ends = [f"{word} {end:g}" for word, end in (("at least", self.low), ("at most", self.high)) if end == end]
-        return " and ".join(end for end in ends if "inf" not in end)
+        ends = (("at least", self.low), ("at most", self.high))
+        return " and ".join(f"{word} {end:g}" for word, end in ends if math.isfinite(end))
 
 
 class Problem(NamedTuple):

@@ -17,7 +17,7 @@ from movingfrf.response.gradient import gradient, records_of
 from movingfrf.response.random_gradient import random_gradient, statistic_slope
 from movingfrf.response.ride import ride
 from movingfrf.scenarios.scenario import drive_of
-from movingfrf.studies.optimisation.problem import Problem
+from movingfrf.studies.optimisation.problem import Limit, Problem
 from movingfrf.studies.sweep.axes import Axes, Axis
 from movingfrf.studies.sweep.plan import Plan
 from movingfrf.studies.sweep.solving import Solved, solved
@@ -54,6 +54,7 @@ class Bound(NamedTuple):
     sign: float  # 1: not fall below, −1: not exceed
     end: float
     scale: float
+    words: str = ""
     moves: bool = False  # whether it gives way, by what is made small
 
     def room(self, wanted: FloatArray, given: float = 0.0) -> float:
@@ -86,6 +87,7 @@ class Searcher:
         self._known: dict[bytes, Evaluated] = {}
         self._slopes: dict[bytes, FloatArray] = {}
         self._variants = problem.plan.variants
+        self._limits: list[Bound] | None = None
 
     def at(self, shares: FloatArray) -> Evaluated:
         """Try values so far along their ranges."""
@@ -164,13 +166,23 @@ class Searcher:
 
     def limits(self) -> list[Bound]:
         """Give all limits."""
-        return [
-            Bound(place, sign, end, limit.scale)
-            for limit in self.problem.limits
-            for place in self._places(limit.of.measure, limit.of.numbers)
-            for sign, end in ((1.0, limit.low), (-1.0, limit.high))
-            if np.isfinite(end)
-        ]
+        if self._limits is None:
+            self._limits = [
+                Bound(place, sign, end, self._scale(place, limit), f"{limit.of.measure} of {name}, {limit.words},")
+                for limit in self.problem.limits
+                for place, name in zip(
+                    self._places(limit.of.measure, limit.of.numbers), limit.of.names, strict=True
+                )
+                for sign, end in ((1.0, limit.low), (-1.0, limit.high))
+                if np.isfinite(end)
+            ]
+        return self._limits
+
+    def _scale(self, place: int, limit: Limit) -> float:
+        """Give the size of a limit; where that is zero, of what was found first."""
+        own = max(abs(end) for end in (limit.low, limit.high) if np.isfinite(end))
+        seen = (abs(float(tried.wanted[place])) for tried in self.tried if np.isfinite(tried.wanted[place]))
+        return own or next((size for size in seen if size), 1.0)
 
     def exceeded(self, tried: Evaluated) -> float:
         """By how much the worst limit is exceeded, as a share of it; nan without an answer."""
@@ -237,7 +249,7 @@ def searched(problem: Problem, starts: int, progress: Progress) -> tuple[Searche
         raise SolveError(
             f"none of {len(ranked)} cases within the ranges has an answer; the first: {ranked[0].case.status[0]}"
         )
-    limits, aims = searcher.limits(), searcher.aims
+    limits, aims = [*searcher.limits()], searcher.aims
     runs = []
     if searcher.exceeded(ranked[0]) > tuned.kept:
         # Into the limits first, or as near as can be.
