@@ -269,6 +269,7 @@ OTHERS = {
     "accelerance",
     "compare",
     "design",
+    "optimise",
     "read_profile",
     "struck_plate",
     "sweep",

@@ -107,6 +107,22 @@ def test_the_agency_s_page(tmp_path):
     largest = float(expected.dynamic_load_coefficient.max())
     assert f"Largest: {largest:.4f}, at axle 1, speed 80 km/h." in page
     assert page.count("<figure") == 3
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
+def test_designer_example():
+    """Around the best dampers, a hundredth away in any direction, the limit is broken or the load is larger."""
+    example = loaded("designer")
+    found = example.best()
+    assert found.success
+    ways = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0.0, 2 * np.pi, 24, endpoint=False)])
+    near = found.x * np.exp(0.01 * ways)
+    dampers = tuple(f"vehicle.suspension_damping.{number}" for number in (0, 1))
+    measures = ["dynamic_load_coefficient", "weighted_acceleration_rms"]
+    table = mf.sweep(example.scenario(), {dampers: [tuple(each) for each in near]}, measures=measures)
+    load, comfort = table.dynamic_load_coefficient.values[:, 1], table.weighted_acceleration_rms.values[:, 0]
+    within = comfort <= example.COMFORT
+    assert 0 < within.sum() < within.size  # the limit is what decides
+    assert (load[within] > found.fun).all()
+    assert load.min() < found.fun == pytest.approx(0.0595, rel=0.01)
 
 
 @pytest.mark.skipif(not PAVED_ROAD.exists(), reason=f"the surveyed profile {PAVED_ROAD.name} is not there")

@@ -7,12 +7,36 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from tests.faults import guideways, loads, metrics, response, roughness, shown, stepping, sweeps, vehicles, written
+from tests.faults import (
+    guideways,
+    loads,
+    metrics,
+    optimise,
+    response,
+    roughness,
+    shown,
+    stepping,
+    sweeps,
+    vehicles,
+    written,
+)
 from tests.faults.fault import SOURCE, Fault
 
 PARTS: dict[str, ModuleType] = {
     module.__name__.rpartition(".")[2]: module
-    for module in (guideways, vehicles, roughness, metrics, response, loads, stepping, sweeps, shown, written)
+    for module in (
+        guideways,
+        vehicles,
+        roughness,
+        metrics,
+        response,
+        loads,
+        stepping,
+        sweeps,
+        optimise,
+        shown,
+        written,
+    )
 }
 
 

@@ -149,6 +149,8 @@ def selection(fault: Fault | None) -> list[str]:
         return PROFILES + SELECTION + REFERENCE
     if file == "studies/sweep/cluster.py":
         return ["tests/test_cluster.py"]
+    if fault in faults_of("optimise"):
+        return ["tests/test_optimise.py"]
     if file.startswith("studies/sweep") or fault in faults_of("sweeps"):
         return [
             "tests/test_roads_by_seed.py",
