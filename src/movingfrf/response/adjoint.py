@@ -239,9 +239,7 @@ def _forced(
         free = part.motion.free.T @ pushed
         modes = recalled(part, "modes under forces", partial(_modes, part))
         if modes is None:
-            columns = np.moveaxis(free.reshape(-1, *free.shape[-2:]), (2, 1), (0, 1))
-            found = np.linalg.solve(np.moveaxis(part.own.at(omega), -1, 0), columns)
-            moved = np.moveaxis(found, (0, 1), (2, 1)).reshape(free.shape)
+            moved = solved(part.own.at(omega), free)
         elif modes.poles.size:
             entered = modes.entered[0]
             assert entered is not None

@@ -54,8 +54,8 @@ def optimise(
         all contacts, or of all degrees of freedom that are translations and move no contact: bodies and seats, but
         neither wheels nor rotations.
     where : mapping of str, or tuple of str and place, to float or tuple of float, optional
-        Upper limits of measures, or lower and upper ones with None for one that is not there: at all places that
-        None means above, or at one, `("weighted_acceleration_rms", "cab")`.
+        Upper limits of measures [in their own units], or lower and upper ones with None for one that is not there:
+        at all places that None means above, or at one, `("weighted_acceleration_rms", "cab")`.
     response : str
         `simulate`, or `random`: the response to all roads of a spectrum, as `random_response` computes it.
     starts : int
