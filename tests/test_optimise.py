@@ -135,6 +135,7 @@ KINDS = {
         ["mass", "stiffness", "damping", "wheel_mass"],
         [],
     ),
+    "no freedom but its contact's": ({"kind": "wheelset", "mass": 1500.0}, TRACK, ["mass"], []),
     "seat": (
         {
             "kind": "seated",

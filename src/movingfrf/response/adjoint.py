@@ -238,14 +238,15 @@ def _forced(
         pushed = force[..., dofs, :]
         free = part.motion.free.T @ pushed
         modes = recalled(part, "modes under forces", partial(_modes, part))
-        if modes is None:
+        moved: ComplexArray
+        if not len(part.own.constant):
+            moved = free
+        elif modes is None:
             moved = solved(part.own.at(omega), free)
-        elif modes.poles.size:
+        else:
             entered = modes.entered[0]
             assert entered is not None
             moved = modes.shapes @ ((entered @ free) / (1j * omega - modes.poles[:, None]))
-        else:
-            moved = free
         motion[..., dofs, :] = part.motion.free @ moved
         pressed[..., below, :] = part.entry.transposed().times(omega, moved) + part.motion.prescribed.T @ pushed
     return motion, pressed
@@ -255,8 +256,6 @@ def _modes(part: Part) -> Modes | None:
     """Poles and residues of P⁻¹ between forces on the free coordinates and these."""
     free = len(part.own.constant)
     nothing = np.zeros((free, free))
-    if not free:
-        return None
     return Modes.of(part.own, Quadratic(np.eye(free), nothing, nothing))
 
 

@@ -58,8 +58,9 @@ class Key(NamedTuple):
 
     def around(self, value: float) -> list[tuple[float, float]]:
         """Give values near by within the range, each with its weight in a derivative [1/unit]."""
-        # Matrices of a vehicle are polynomials of low degree in their keys [1e-5 to 1e-3].
-        step = 1e-4 * max(abs(value), 1e-2 * (self.high - self.low))
+        # Matrices are polynomials of low degree in their keys, a road under a faster vehicle has shorter waves
+        # [1e-6 to 1e-4, 1e-7 to 1e-5].
+        step = (1e-6 if self.paths[0].startswith("run.") else 1e-5) * max(abs(value), 0.01 * (self.high - self.low))
         step = min(step, 0.25 * (self.high - self.low))
         if self.low <= value - step and value + step <= self.high:
             return [(-0.5 / step, value - step), (0.5 / step, value + step)]
