@@ -6,27 +6,27 @@ from tests.faults.fault import Fault
 
 FAULTS = [
     Fault(
-        "gradient of the system as it is", "response/adjoint.py", ".matrix.swapaxes(0, 1), taken", ".matrix, taken"
+        "gradient of the system as it is", "response/adjoint.py", ".matrix.swapaxes(0, 1), force", ".matrix, force"
     ),
-    Fault("forces within that are forgotten", "response/adjoint.py", "answered + out[0]", "answered"),
+    Fault("forces within that are forgotten", "response/adjoint.py", "moved + answered", "answered"),
     Fault(
         "contacts that do not change",
         "response/adjoint.py",
-        "sums.springs[:] += squeezed",
-        "sums.springs[:] += 0 * squeezed",
+        "self.springs[:] += squeezed",
+        "self.springs[:] += 0 * squeezed",
     ),
     Fault("rigid contacts that yield", "response/adjoint.py", "yields = ~rigid[:, None] /", "yields = 1.0 /"),
     Fault(
         "road that does not change",
         "response/adjoint.py",
-        "found[:, key] -= (pressed * road",
-        "found[:, key] -= 0 * (pressed * road",
+        "found[:, key] -= (answer.pressed * road",
+        "found[:, key] -= 0 * (answer.pressed * road",
     ),
     Fault(
         "track that does not change",
         "response/adjoint.py",
-        "found[:, key] += (below * yielding)",
-        "found[:, key] += 0 * (below * yielding)",
+        "found[:, key] += (answer.below * yielding)",
+        "found[:, key] += 0 * (answer.below * yielding)",
     ),
     Fault(
         "steady travel that does not change",

@@ -36,7 +36,7 @@ from movingfrf.response.survey import steady_state
 from movingfrf.response.system import System, Tables
 from movingfrf.response.truncation import Truncation
 from movingfrf.roughness.road import Road
-from movingfrf.vehicles.dynamics import Modes, Part, Quadratic
+from movingfrf.vehicles.dynamics import Dynamics, Modes, Part, Quadratic
 from movingfrf.vehicles.journey import Journey
 from movingfrf.vehicles.vehicle import Vehicle
 
@@ -119,6 +119,14 @@ def at_rest(system: System, slopes: Sequence[Slope], stencils: Sequence[Stencil]
     return found
 
 
+class _Answer(NamedTuple):
+    """What the adjoint system answers, conjugate; each (number, case, place, frequency)."""
+
+    motion: ComplexArray  # g*
+    pressed: ComplexArray  # δ*
+    below: ComplexArray  # (w̄ + δ)*
+
+
 class _Matrices(NamedTuple):
     """How numbers change with the matrices of a vehicle, summed over cases and frequencies."""
 
@@ -126,6 +134,24 @@ class _Matrices(NamedTuple):
     contact_map: FloatArray  # (number, contact, dof)
     springs: FloatArray  # (number, contact)
     dashpots: FloatArray  # (number, contact)
+
+    @classmethod
+    def nothing(cls, numbers: int, contacts: int, dofs: int) -> _Matrices:
+        """Begin with zero."""
+        shapes = (3, numbers, dofs, dofs), (numbers, contacts, dofs), (numbers, contacts), (numbers, contacts)
+        return cls(*map(np.zeros, shapes))
+
+    def add(
+        self, answer: _Answer, omega: ComplexArray, force: ComplexArray, motion: ComplexArray, yields: ComplexArray
+    ) -> None:
+        """Add some frequencies."""
+        s = 1j * omega
+        for power, total in enumerate(self.powers):
+            total -= _summed(answer.motion * s**power, motion)
+        self.contact_map[:] -= _summed(answer.motion, force).swapaxes(1, 2) + _summed(answer.pressed, motion)
+        squeezed = -(answer.pressed * np.square(yields) * force).sum(axis=1)
+        self.springs[:] += squeezed.real.sum(axis=-1)
+        self.dashpots[:] += (s * squeezed).real.sum(axis=-1)
 
     def change(self, stencil: Stencil) -> FloatArray:
         """Give the derivative of each number along a key, shape (number,)."""
@@ -162,79 +188,70 @@ def changes(
     ndarray, shape (number, key)
         Derivatives, steady travel left out.
     """
-    system, omega, numbers = known.system, known.omega, len(wanted.force)
-    dynamics, contacts, dofs = system.dynamics, system.dynamics.contacts, system.dynamics.dofs
+    omega, vehicle, numbers = known.omega, known.system.vehicle, len(wanted.force)
     found = np.zeros((numbers, len(stencils)))
     roads = [
         np.sum([weight * elevation(case) for weight, case in stencil], axis=0) if _differ(stencil, _road) else None
         for stencil in stencils
     ]
-    softer = [stencil if _differ(stencil, _track) else None for stencil in stencils]
-    sums = _Matrices(
-        np.zeros((3, numbers, dofs, dofs)),
-        np.zeros((numbers, contacts, dofs)),
-        np.zeros((numbers, contacts)),
-        np.zeros((numbers, contacts)),
-    )
-    reach, kept = known.truncation.reach(omega), known.truncation.taper(omega)
-    rigid = np.isinf(system.vehicle.springs)
-    contact = np.where(rigid, 1.0, system.vehicle.springs)[:, None] + 1j * omega * system.vehicle.dashpots[:, None]
-    yields = ~rigid[:, None] / contact  # a rigid contact stays rigid
-    for some in BATCH.some(omega.size, max(contacts**2, numbers * dofs)):
-        here, share = omega[some], kept[some]
-        force, motion = known.force[..., some], known.motion[..., some]
-        pushed, moved, sagged = (part[..., some] for part in (wanted.force, wanted.motion, wanted.deflection))
-        taken = np.conj(pushed)
-        gives = bool(some.start < reach)
-        out = _forced(dynamics.alike, here, np.conj(moved), contacts)
-        if gives:
-            frf = np.moveaxis(
-                system.guideway.moving_frf(speed=system.speed, omega=here, **system.vehicle.offsets), 0, -1
-            )
-            frf = share * frf
-            below = out[1].copy()
-            below[..., : sagged.shape[-1]] += np.conj(sagged)
-            taken = taken + applied(frf.swapaxes(0, 1), below)
-            taken = solved(Tables(here, frf, dynamics.stiffness(here)).matrix.swapaxes(0, 1), taken)
-        answered, pressed = dynamics.response(here, taken)
-        answered, pressed = answered + out[0], pressed + out[1]  # conjugates of g and δ
-        s = 1j * here
-        for power, total in enumerate(sums.powers):
-            total -= _summed(answered * s**power, motion)
-        sums.contact_map[:] -= _summed(force, answered, across=True) + _summed(pressed, motion)
-        squeezed = -(pressed * yields[:, some] ** 2 * force).sum(axis=1)
-        sums.springs[:] += squeezed.real.sum(axis=-1)
-        sums.dashpots[:] += (s * squeezed).real.sum(axis=-1)
-        below = pressed.copy()
-        below[..., : sagged.shape[-1]] += np.conj(sagged)
-        for key, (road, tracks) in enumerate(zip(roads, softer, strict=True)):
+    tracks = [stencil if _differ(stencil, _track) else None for stencil in stencils]
+    sums = _Matrices.nothing(numbers, len(vehicle.contacts), len(vehicle.dof_names))
+    rigid, kept = np.isinf(vehicle.springs), known.truncation.taper(omega)
+    contact = np.where(rigid, 1.0, vehicle.springs)[:, None] + 1j * omega * vehicle.dashpots[:, None]
+    yields = ~rigid[:, None] / contact  # 1/k; a rigid contact stays rigid
+    for some in BATCH.some(omega.size, max(known.system.ports**2, numbers * len(vehicle.dof_names))):
+        answer = _answered(known, wanted, some)
+        here, force = omega[some], known.force[..., some]
+        sums.add(answer, here, force, known.motion[..., some], yields[:, some])
+        for key, (road, track) in enumerate(zip(roads, tracks, strict=True)):
             if road is not None:
-                found[:, key] -= (pressed * road[..., some]).real.sum(axis=(1, 2, 3))
-            if tracks is not None and gives:
-                yielding = applied(share * _of_tracks(tracks, here), force)
-                found[:, key] += (below * yielding).real.sum(axis=(1, 2, 3))
+                found[:, key] -= (answer.pressed * road[..., some]).real.sum(axis=(1, 2, 3))
+            if track is not None and kept[some].any():
+                yielding = applied(kept[some] * _of_tracks(track, here), force)
+                found[:, key] += (answer.below * yielding).real.sum(axis=(1, 2, 3))
     return found + np.stack([sums.change(stencil) for stencil in stencils], axis=-1)
 
 
-def _summed(left: ComplexArray, right: ComplexArray, *, across: bool = False) -> FloatArray:
-    """Sum products of two places over cases and frequencies: (number, place, place)."""
-    if across:  # the left one has no numbers
-        return np.einsum("cif,ncjf->nij", left, right, optimize=True).real
+def _answered(known: Solution, wanted: Wanted, some: slice) -> _Answer:
+    """Solve the adjoint system at some frequencies."""
+    system, omega, kept = known.system, known.omega[some], known.truncation.taper(known.omega[some])
+    force, deflection, motion = (np.conj(part[..., some]) for part in wanted)
+    moved, pressed = _forced(system.dynamics, omega, motion)
+    if kept.any():
+        frf = kept * np.moveaxis(
+            system.guideway.moving_frf(speed=system.speed, omega=omega, **system.vehicle.offsets), 0, -1
+        )
+        force = force + applied(frf.swapaxes(0, 1), _plus(pressed, deflection))
+        tables = Tables(omega, frf, system.dynamics.stiffness(omega))
+        force = solved(tables.matrix.swapaxes(0, 1), force)  # I + Gᵀ D is the transpose of I + D G
+    answered, felt = system.dynamics.response(omega, force)
+    pressed = pressed + felt
+    return _Answer(moved + answered, pressed, _plus(pressed, deflection))
+
+
+def _plus(pressed: ComplexArray, deflection: ComplexArray) -> ComplexArray:
+    """Add what is there of deflections, which end where the guideway is rigid."""
+    total = pressed.copy()
+    total[..., : deflection.shape[-1]] += deflection
+    return total
+
+
+def _summed(left: ComplexArray, right: ComplexArray) -> FloatArray:
+    """Sum products of two places over cases and frequencies, (number, place, place); right has no numbers."""
     numbers, cases, places, size = left.shape
     rows = np.moveaxis(left, 1, 2).reshape(numbers * places, cases * size)
     columns = np.moveaxis(right, 0, 1).reshape(right.shape[1], cases * size)
-    return (rows @ columns.T).real.reshape(numbers, places, -1)
+    products: FloatArray = (rows @ columns.T).real
+    return products.reshape(numbers, places, -1)
 
 
-def _forced(
-    alike: Sequence[tuple[Part, np.ndarray, np.ndarray]], omega: ComplexArray, force: ComplexArray, contacts: int
-) -> tuple[ComplexArray, ComplexArray]:
+def _forced(dynamics: Dynamics, omega: ComplexArray, force: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """Motion, and contact forces, of a vehicle under forces on its degrees of freedom, its contacts held."""
     motion = np.zeros_like(force)
-    pressed = np.zeros((*force.shape[:-2], contacts, omega.size), complex)
+    pressed = np.zeros((*force.shape[:-2], dynamics.contacts, omega.size), complex)
     if not force.any():
         return motion, pressed
-    for part, dofs, below in alike:
+    for part, dofs, below in dynamics.alike:
         pushed = force[..., dofs, :]
         free = part.motion.free.T @ pushed
         modes = recalled(part, "modes under forces", partial(_modes, part))
