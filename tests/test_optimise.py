@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import csv
+import doctest
 import json
 import math
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import movingfrf as mf
-from movingfrf.metrics.measures import statistics, usual, usual_of
+from movingfrf.metrics.measures import statistics, usual
 from movingfrf.metrics.slopes import slopes
 from movingfrf.response.gradient import gradient, records_of
 from movingfrf.response.random_gradient import random_gradient, statistic_slope
@@ -21,6 +23,7 @@ from movingfrf.scenarios.scenario import drive_of
 from movingfrf.scenarios.variants import Variants, tables_in
 from movingfrf.studies.optimisation.page import render
 from movingfrf.studies.optimisation.problem import Key, problem_of
+from movingfrf.studies.optimisation.words import limits_in
 from tests.sweep_parts import command
 from tests.test_vehicle_scenarios import GROUND, TEXTS
 
@@ -103,11 +106,17 @@ def places_of(known, names, vehicle):
     return [(name, place) for name in names for place in range(counts[known[name].place])]
 
 
-def differences(measure, x, step):
-    """Take derivatives of a measure by differences of fourth order."""
-    return (8 * (measure(x + step) - measure(x - step)) - (measure(x + 2 * step) - measure(x - 2 * step))) / (
-        12 * step
-    )
+def differences(said, path, places, response="simulate"):
+    """Take derivatives along a key, by differences of fourth order of whole cases, and sizes to judge them by."""
+    x = value_in(said, path)
+    step = 1e-3 * abs(x)
+    names = [*dict.fromkeys(name for name, _ in places)]
+    axes = {path: [x + n * step for n in (-2, -1, 1, 2)]}
+    table = mf.sweep(said, axes, measures=names, response=response, time_step=said["run"]["time_step"])
+    low, below, above, high = np.stack([table[name].values[:, place] for name, place in places], axis=1)
+    found = (8 * (above - below) - (high - low)) / (12 * step)
+    # What hardly changes is known to so many digits of the measure.
+    return found, np.maximum(np.abs(found), 1e-2 * np.abs(above / x))
 
 
 def stencils(variants, said, paths):
@@ -172,17 +181,10 @@ def test_gradients_are_differences(kind):
     made = [slopes()[name](records, place) for name, place in places]
     found = gradient(solved, made, stencils(variants, said, paths))
 
-    def measured(path, x):
-        taken = usual_of(variants.at({path: x}).run(), usual())
-        return np.array([taken[name][place] for name, place in places])
-
+    smooth = np.array(["peak" not in name and "smallest" not in name for name, _ in places])
     for number, path in enumerate(paths):
-        x = value_in(said, path)
-        expected = differences(lambda at, path=path: measured(path, at), x, 1e-3 * x)
-        # What hardly changes is known to so many digits of the measure.
-        size = np.maximum(np.abs(expected * x), 1e-2 * np.abs(measured(path, x)))
-        smooth = np.array(["peak" not in name and "smallest" not in name for name, _ in places])
-        off = np.abs(found[:, number] - expected) * x
+        expected, size = differences(said, path, places)
+        off = np.abs(found[:, number] - expected)
         assert (off <= np.where(smooth, 1e-6, 1e-4) * size).all(), path
 
 
@@ -205,15 +207,9 @@ def test_gradients_of_random_responses_are_differences(vehicle):
     paths = ["vehicle.body_mass", f"{DAMPING}.1"]
     found = random_gradient(case, result.frequency.values, made, stencils(variants, said, paths))
 
-    def measured(path, x):
-        result = variants.at({path: x}).at_random()
-        return np.array([float(result[name][place]) for name, place in places])
-
     for number, path in enumerate(paths):
-        x = value_in(said, path)
-        expected = differences(lambda at, path=path: measured(path, at), x, 1e-3 * x)
-        size = np.maximum(np.abs(expected * x), 1e-2 * np.abs(measured(path, x)))
-        assert (np.abs(found[:, number] - expected) * x <= 1e-6 * size).all(), path
+        expected, size = differences(said, path, places, "random")
+        assert (np.abs(found[:, number] - expected) <= 1e-6 * size).all(), path
 
 
 def test_lift_off_has_a_gradient():
@@ -222,16 +218,12 @@ def test_lift_off_has_a_gradient():
     variants = Variants(*tables_in(said))
     scenario = variants.at({})
     result, case = scenario.at_random(), drive_of(scenario)
-    made = [statistic_slope(result, name, 0) for name in ("lift_off_share", "lift_off_rate")]
+    places = [("lift_off_share", 0), ("lift_off_rate", 0)]
+    made = [statistic_slope(result, *place) for place in places]
     found = random_gradient(case, result.frequency.values, made, stencils(variants, said, [DAMPING]))
-
-    def measured(x):
-        result = variants.at({DAMPING: x}).at_random()
-        return np.array([result.lift_off_share.item(), result.lift_off_rate.item()])
-
-    expected = differences(measured, 1500.0, 1.5)
-    assert (np.abs(expected * 1500.0) > 0.1 * measured(1500.0)).all()
-    np.testing.assert_allclose(found[:, 0], expected, rtol=1e-6)
+    expected, _ = differences(said, DAMPING, places, "random")
+    assert (np.abs(expected * 1500.0) > 0.1 * result.lift_off_share.item()).all()
+    np.testing.assert_allclose(found[:, 0], expected, rtol=1e-5)
 
 
 @pytest.mark.parametrize("value", [1.0, 1.0005, 55.0, 100.0])
@@ -410,8 +402,17 @@ def test_the_command(tmp_path):
     refused = command("optimise", file, "--over", f"{DAMPING}=5", *asked[2:])
     assert refused.returncode == 2
     assert "must be KEY=LOW~HIGH" in refused.stderr
-    refused = command("optimise", file, *asked, "--where", "contact_force_rms")
-    assert "must be MEASURE=LIMIT" in refused.stderr
+
+
+@pytest.mark.parametrize("line", ["contact_force_rms", "contact_force_rms=", "=3", "contact_force_rms:=3", "a=~"])
+def test_lines_that_are_no_limits(line):
+    with pytest.raises(ValueError, match=r"must be MEASURE=LIMIT, MEASURE=LOW~ for"):
+        limits_in([line])
+
+
+def test_the_documentation_runs():
+    page = Path(__file__).parents[1] / "docs" / "optimisation.md"
+    assert doctest.testfile(str(page), module_relative=False).failed == 0
 
 
 def test_the_page_has_what_was_found(held):
