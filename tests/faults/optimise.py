@@ -15,7 +15,6 @@ FAULTS = [
         "self.springs[:] += squeezed",
         "self.springs[:] += 0 * squeezed",
     ),
-    Fault("rigid contacts that yield", "response/adjoint.py", "yields = ~rigid[:, None] /", "yields = 1.0 /"),
     Fault(
         "road that does not change",
         "response/adjoint.py",

@@ -196,9 +196,8 @@ def changes(
     ]
     tracks = [stencil if _differ(stencil, _track) else None for stencil in stencils]
     sums = _Matrices.nothing(numbers, len(vehicle.contacts), len(vehicle.dof_names))
-    rigid, kept = np.isinf(vehicle.springs), known.truncation.taper(omega)
-    contact = np.where(rigid, 1.0, vehicle.springs)[:, None] + 1j * omega * vehicle.dashpots[:, None]
-    yields = ~rigid[:, None] / contact  # 1/k; a rigid contact stays rigid
+    kept = known.truncation.taper(omega)
+    yields = 1.0 / (vehicle.springs[:, None] + 1j * omega * vehicle.dashpots[:, None])  # zero at a rigid contact
     for some in BATCH.some(omega.size, max(known.system.ports**2, numbers * len(vehicle.dof_names))):
         answer = _answered(known, wanted, some)
         here, force = omega[some], known.force[..., some]
