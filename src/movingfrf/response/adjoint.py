@@ -197,7 +197,8 @@ def changes(
     tracks = [stencil if _differ(stencil, _track) else None for stencil in stencils]
     sums = _Matrices.nothing(numbers, len(vehicle.contacts), len(vehicle.dof_names))
     kept = known.truncation.taper(omega)
-    yields = 1.0 / (vehicle.springs[:, None] + 1j * omega * vehicle.dashpots[:, None])  # zero at a rigid contact
+    contact: ComplexArray = vehicle.springs[:, None] + 1j * omega * vehicle.dashpots[:, None]
+    yields = 1.0 / contact  # nothing, where it is rigid
     for some in BATCH.some(omega.size, max(known.system.ports**2, numbers * len(vehicle.dof_names))):
         answer = _answered(known, wanted, some)
         here, force = omega[some], known.force[..., some]
