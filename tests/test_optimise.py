@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import movingfrf as mf
+from movingfrf._basics.progress import silent
 from movingfrf.metrics.measures import statistics, usual
 from movingfrf.metrics.slopes import slopes
 from movingfrf.response.gradient import gradient, records_of
@@ -23,6 +24,7 @@ from movingfrf.scenarios.scenario import drive_of
 from movingfrf.scenarios.variants import Variants, tables_in
 from movingfrf.studies.optimisation.page import render
 from movingfrf.studies.optimisation.problem import Key, problem_of
+from movingfrf.studies.optimisation.search import Searcher
 from movingfrf.studies.optimisation.words import limits_in
 from tests.sweep_parts import command
 from tests.test_vehicle_scenarios import GROUND, TEXTS
@@ -235,6 +237,19 @@ def test_derivatives_stay_within_the_range(value):
     assert key.at(key.share(value)) == pytest.approx(value, rel=1e-12)
 
 
+def test_slopes_along_the_ranges():
+    """One key goes by factors, the other by steps."""
+    said = tables(solved_step=1e-3, truncation=60.0)
+    over = {DAMPING: (100.0, 1e4), "vehicle.suspension_stiffness": (1.5e4, 3e4)}
+    problem = problem_of(said, over, "contact_force_rms", where={("acceleration_rms", "body"): 9.0})
+    assert [key.by_factors for key in problem.keys] == [True, False]
+    searcher, at = Searcher(problem, silent, 10), np.array([0.4, 0.6])
+    found = searcher.slopes(at)
+    for key, way in enumerate(1e-3 * np.eye(2)):
+        expected = (searcher.at(at + way).wanted - searcher.at(at - way).wanted) / 2e-3
+        np.testing.assert_allclose(found[:, key], expected, rtol=1e-3)
+
+
 def test_the_damping_that_is_most_comfortable_in_closed_form():
     """On white velocity the body's variance is π S ((m + M) k²/(M² c) + K c/M²), least at c = k √((m + M)/K)."""
     said = tables(roughness={"kind": "iso_road", "roughness": 16e-6, "band": [1e-3, 30.0]})
@@ -294,6 +309,7 @@ def test_the_largest_of_all_contacts_is_made_small():
     axes["vehicle.tyre_stiffness.0"] = np.geomspace(1e6, 4e6, 8)
     worst = mf.sweep(tables(TRUCK, RIGID), axes, measures=["contact_force_rms"]).contact_force_rms.max("contact")
     assert 0.97 * worst.min() < best.fun <= worst.min()
+    assert best.fun == best.table.contact_force_rms.max("contact").min()
     # A key of several: one value.
     assert best.x.size == 2
     assert drive_of(best.scenario).vehicle.matrices[1].any()
@@ -402,6 +418,15 @@ def test_the_command(tmp_path):
     refused = command("optimise", file, "--over", f"{DAMPING}=5", *asked[2:])
     assert refused.returncode == 2
     assert "must be KEY=LOW~HIGH" in refused.stderr
+
+
+def test_limits_in_a_line():
+    lines = ["weighted_acceleration_rms:cab=0.5", "deflection_rms=1e-3", "smallest_contact_force:1=2e4~"]
+    assert limits_in(lines) == {
+        ("weighted_acceleration_rms", "cab"): 0.5,
+        "deflection_rms": 1e-3,
+        ("smallest_contact_force", 1): (2e4, None),
+    }
 
 
 @pytest.mark.parametrize("line", ["contact_force_rms", "contact_force_rms=", "=3", "contact_force_rms:=3", "a=~"])
