@@ -241,13 +241,16 @@ def test_slopes_along_the_ranges():
     """One key goes by factors, the other by steps."""
     said = tables(solved_step=1e-3, truncation=60.0)
     over = {DAMPING: (100.0, 1e4), "vehicle.suspension_stiffness": (1.5e4, 3e4)}
-    problem = problem_of(said, over, "contact_force_rms", where={("acceleration_rms", "body"): 9.0})
+    problem = problem_of(said, over, "contact_force_rms", where={("acceleration_rms", "body"): 99.0})
     assert [key.by_factors for key in problem.keys] == [True, False]
     searcher, at = Searcher(problem, silent, 10), np.array([0.4, 0.6])
     found = searcher.slopes(at)
     for key, way in enumerate(1e-3 * np.eye(2)):
         expected = (searcher.at(at + way).wanted - searcher.at(at - way).wanted) / 2e-3
         np.testing.assert_allclose(found[:, key], expected, rtol=1e-3)
+    # Whatever was tried last: the least, which is at neither end of what was.
+    forces = [float(searcher.at(np.array([share, 0.6])).wanted[0]) for share in (0.0, 0.6, 1.0)]
+    assert float(searcher.best().wanted[0]) < min(forces[0], forces[-1])
 
 
 def test_the_damping_that_is_most_comfortable_in_closed_form():
