@@ -107,6 +107,8 @@ def test_the_agency_s_page(tmp_path):
     largest = float(expected.dynamic_load_coefficient.max())
     assert f"Largest: {largest:.4f}, at axle 1, speed 80 km/h." in page
     assert page.count("<figure") == 3
+
+
 @pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
 def test_designer_example():
     """Around the best dampers, a hundredth away in any direction, the limit is broken or the load is larger."""

@@ -171,7 +171,10 @@ KINDS = {
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_gradients_are_differences(kind):
-    """Whole cases to either side, in the same steps; as accurate as these differences are."""
+    """Whole cases to either side, in the same steps; as accurate as these differences are.
+
+    Between samples a peak is found in places, from one of which to the next its slope changes a little.
+    """
     vehicle, guideway, keys, others = KINDS[kind]
     road = {"kind": "side_by_side", "parts": [UNEVEN, UNEVEN["parts"][1]]} if vehicle is FULL else UNEVEN
     said = tables(vehicle, guideway, road, solved_step=1e-3, truncation=60.0)
@@ -187,7 +190,7 @@ def test_gradients_are_differences(kind):
     for number, path in enumerate(paths):
         expected, size = differences(said, path, places)
         off = np.abs(found[:, number] - expected)
-        assert (off <= np.where(smooth, 1e-6, 1e-4) * size).all(), path
+        assert (off <= np.where(smooth, 1e-6, 1e-3) * size).all(), path
 
 
 def test_every_usual_measure_has_its_slope():

@@ -39,7 +39,12 @@ FAULTS = [
         "matrices = stiffness, damping, mass,",
         "matrices = stiffness, mass, damping,",
     ),
-    Fault("window not undone", "response/gradient.py", "np.exp(line.decay * step *", "np.exp(0.0 * step *"),
+    Fault(
+        "window of the adjoint not undone",
+        "response/gradient.py",
+        "np.exp(line.decay * step *",
+        "np.exp(0.0 * step *",
+    ),
     Fault(
         "filter the wrong way round",
         "metrics/slopes.py",

@@ -17,7 +17,7 @@ class Between:
 
     # Samples on either side that tell a value between two of them, and in how many places it is looked for.
     reach: int = 10  # [8 to 16]
-    places: int = 8  # [6 to 16]
+    places: int = 16  # [6 to 32]
     # Shape of the window over the samples: what is below seven tenths of the Nyquist frequency comes out to 1e-4.
     shape: float = 9.0  # [8 to 10]
     # Extremes of which a parabola through three samples tells less than of the largest one, by so many times the
@@ -68,35 +68,60 @@ def extremes(records: FloatArray) -> tuple[FloatArray, FloatArray]:
     (0.996, -1.0001, 1.0001)
     """
     rows = records.reshape(-1, records.shape[-1])
-    apart = np.diff(rows)
-    steps = np.maximum(apart.max(axis=1, initial=0.0), -apart.min(axis=1, initial=0.0))
     if loops := loops_for("_basics.compiled", rows.size // 16):
+        apart = np.diff(rows)
+        steps = np.maximum(apart.max(axis=1, initial=0.0), -apart.min(axis=1, initial=0.0))
         sampled = np.stack([rows.min(axis=1), rows.max(axis=1)], axis=1)
         found = loops.extremes(handed(rows, float), sampled, steps, handed(weights(), float), BETWEEN.near)
     else:
-        each = zip(rows, steps.tolist(), strict=True)
-        found = np.array([[-_largest(-row, step), _largest(row, step)] for row, step in each]).reshape(-1, 2)
+        found = np.array([[-largest_of(-row)[0], largest_of(row)[0]] for row in rows]).reshape(-1, 2)
     return found[:, 0].reshape(records.shape[:-1]), found[:, 1].reshape(records.shape[:-1])
 
 
-def _largest(row: FloatArray, step: float) -> float:
-    """Largest value of a record with this largest step from sample to sample."""
-    sampled = float(row.max())
-    before, here, after = row[:-2], row[1:-1], row[2:]
+def largest_of(record: FloatArray) -> tuple[float, FloatArray]:
+    """Find the largest value of a record, between its samples too, and how it changes with each of them.
+
+    Parameters
+    ----------
+    record : ndarray, shape (time,)
+        In even steps.
+
+    Returns
+    -------
+    largest : float
+        As `extremes` finds it.
+    weights : ndarray, shape (time,)
+        Its derivative by each sample.
+
+    Examples
+    --------
+    >>> value, weights = largest_of(np.array([0.0, 3.0, 3.0, 0.0]))
+    >>> value, weights.tolist()
+    (3.375, [-0.125, 0.75, 0.375, 0.0])
+    """
+    first = int(record.argmax())
+    best: tuple[float, int, FloatArray] = (float(record[first]), first, np.ones(1))
+    around = BETWEEN.reach
+    near = BETWEEN.near * float(np.abs(np.diff(record)).max(initial=0.0))
+    before, here, after = record[:-2], record[1:-1], record[2:]
     bend = before - 2.0 * here + after
     at = np.flatnonzero((here >= before) & (here >= after) & (bend < 0.0))
-    if not at.size:
-        return sampled
     told = here[at] - 0.125 * np.square(after[at] - before[at]) / bend[at]
-    close = told >= told.max() - BETWEEN.near * step
-    at, told = at[close] + 1, told[close]
-    inside = (at >= BETWEEN.reach) & (at < row.size - BETWEEN.reach)
-    largest = max(sampled, float(told[~inside].max(initial=sampled)))
-    if inside.any():
-        around = row[at[inside, None] + np.arange(-BETWEEN.reach, BETWEEN.reach + 1)] @ weights().T
-        top = np.clip(around.argmax(axis=1), 1, 2 * BETWEEN.places - 1)
-        low, middle, high = (around[np.arange(top.size), top + aside] for aside in (-1, 0, 1))
-        bend = np.where((middle >= low) & (middle >= high), low - 2.0 * middle + high, 0.0)
-        above = np.divide(np.square(high - low), -8.0 * bend, out=np.zeros_like(bend), where=bend < 0.0)
-        largest = max(largest, float((middle + above).max()))
-    return largest
+    for place in (at[told >= told.max(initial=-np.inf) - near] + 1).tolist():
+        inside = around <= place < record.size - around
+        begins, table = (place - around, weights()) if inside else (place - 1, np.eye(3))
+        values = table @ record[begins : begins + table.shape[1]]
+        top = int(values[1:-1].argmax()) + 1
+        middle: FloatArray = table[top]
+        before_it, value, after_it = values[top - 1 : top + 2].tolist()
+        bent = before_it - 2.0 * value + after_it
+        if value >= max(before_it, after_it) and bent < 0.0:
+            low, high, share = table[top - 1], table[top + 1], (after_it - before_it) / bent
+            value -= 0.125 * share * (after_it - before_it)
+            middle = middle - 0.25 * share * (high - low) + 0.125 * share**2 * (low - 2.0 * middle + high)
+        if value > best[0]:
+            best = value, begins, middle
+    largest, begins, middle = best
+    found = np.zeros(record.size)
+    found[begins : begins + middle.size] = middle
+    return largest, found

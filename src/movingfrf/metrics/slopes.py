@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from movingfrf._basics.arrays import FloatArray
+from movingfrf._basics.peaks import largest_of
 from movingfrf.metrics.comfort import WEIGHTING_OF, weighted
-from movingfrf.metrics.listed import peak
 
 
 class Slope(NamedTuple):
@@ -47,28 +47,15 @@ def of_rms(record: FloatArray) -> tuple[float, FloatArray]:
 
 
 def of_peak(record: FloatArray) -> FloatArray:
-    """How the largest magnitude changes with each sample, whatever is made of those around it.
+    """Tell how the largest magnitude changes with each sample.
 
     Examples
     --------
-    >>> of_peak(np.array([1.0, 0.0, -2.0, 0.0])).round(9)
-    array([ 0.,  0., -1.,  0.])
+    >>> of_peak(np.array([0.0, -3.0, -3.0, 0.0])).tolist()
+    [0.125, -0.75, -0.375, -0.0]
     """
-    # Samples to either side that may tell the peak, and what is looked at of them [>= 10; twice as many].
-    reach, about = 12, 24
-    top = int(np.abs(record).argmax())
-    first = max(top - about, 0)
-    window = record[first : top + about + 1].copy()
-    # Against rounding and curvature [1e-7 to 1e-4].
-    aside = 1e-5 * float(np.abs(record[top]))
-    found = np.zeros_like(record)
-    for number in range(max(top - first - reach, 0), min(top - first + reach + 1, window.size)) if aside else ():
-        kept, ends = window[number], []
-        for window[number] in (kept - aside, kept + aside):
-            ends.append(float(peak(window)))
-        window[number] = kept
-        found[first + number] = (ends[1] - ends[0]) / (2.0 * aside)
-    return found
+    (high, up), (low, down) = largest_of(record), largest_of(-record)
+    return up if high >= low else -down
 
 
 def _force_rms(of: Records, place: int) -> Slope:
@@ -76,9 +63,7 @@ def _force_rms(of: Records, place: int) -> Slope:
 
 
 def _smallest(of: Records, place: int) -> Slope:
-    # So far up that the smallest value is the largest magnitude.
-    force = of.contact_force[place]
-    return Slope("contact_force", place, of_peak(2.0 * float(np.abs(force).max()) - force), load=1.0)
+    return Slope("contact_force", place, largest_of(-of.contact_force[place])[1], load=1.0)
 
 
 def _load_coefficient(of: Records, place: int) -> Slope:
