@@ -186,6 +186,25 @@ def test_what_is_remembered_changes_no_digit():
         assert found.identical(wanted), (turn, what, journey)
 
 
+def test_the_next_vehicle_takes_moving_frfs_and_what_was_seen_where_they_are_the_same():
+    """Vehicles that vibrate alike, so that all frequencies are the same, with wheels elsewhere, or at another speed."""
+    track = mf.track(mf.EulerBernoulliBeam(1.573e7, 711.9), mf.Spring(8.0e6, 3.0e4))
+    surface = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 2.0)), length=90.0, start=-30.0)
+
+    def cars(apart, mass=400.0):
+        car = mf.quarter_car(
+            body_mass=mass, wheel_mass=40.0, suspension_stiffness=2e4, suspension_damping=1.5e3, tyre_stiffness=2e5
+        )
+        return mf.convoy([car, car], spacing=apart)
+
+    journeys = [(5.0, 10.0, 400.0), (5.0, 10.0, 400.1), (6.0, 10.0, 400.0), (6.0, 12.0, 400.0), (5.0, 12.0, 400.1)]
+    for apart, speed, mass in journeys:
+        asked = {"speed": speed, "duration": 2.0, "solved_step": 5e-3, "blend": 0.0}
+        found = mf.simulate(track, cars(apart, mass), surface, **asked)
+        wanted = mf.simulate(copy.copy(track), cars(apart, mass), copy.copy(surface), **asked)
+        assert found.identical(wanted), (apart, speed, mass)
+
+
 def test_results_do_not_share_what_may_be_changed():
     track, car = DAMPED["euler_bernoulli_winkler"], mf.sprung_mass(mass=400.0, stiffness=2e5, damping=1e3)
     surface = mf.harmonic(amplitude=1e-3, wavelength=3.0, length=60.0, start=-20.0)

@@ -225,6 +225,33 @@ FAULTS = [
     Fault("remembered: other frequencies", "response/system.py", " and bool((known.omega == omega).all())", ""),
     Fault("remembered: gains elsewhere", "response/system.py", "known.omega == asked", "True"),
     Fault("remembered: another line", "response/ride.py", "known.cut) == asked", "known.cut)[:2] == asked[:2]"),
+    Fault("remembered: moving FRFs of another speed", "response/system.py", "known.speed == self.speed and ", ""),
+    Fault(
+        "remembered: moving FRFs of other wheels",
+        "response/system.py",
+        " and np.array_equal(known.ahead, distinct)",
+        "",
+    ),
+    Fault(
+        "remembered: what was seen along another line", "response/sampling.py", "known.line == line.told", "True"
+    ),
+    Fault(
+        "remembered: a track at another speed",
+        "response/system.py",
+        "lambda known: known.speed == speed,",
+        "lambda known: True,",
+    ),
+    Fault(
+        "peaks of samples alone",
+        "metrics/entry.py",
+        "return np.maximum(high, -low).T",
+        "return np.abs(values).max(axis=0)",
+    ),
+    Fault(
+        "lowest of samples alone", "metrics/entry.py", "return extremes(values.T)[0].T", "return values.min(axis=0)"
+    ),
+    Fault("values between samples off", "_basics/peaks.py", "np.sinc(away) * ", "np.sinc(away) ** 2 * "),
+    Fault("observed too coarsely", "response/sampling.py", "observed: float = 0.4", "observed: float = 1.6"),
     Fault("remembered: other times", "response/simulation.py", "known.steps == steps", "True"),
     Fault("one car counts", "response/along.py", "self.order.kind.count(number)", "1"),
     Fault("Cramer's rule turned", "response/batches.py", "a * second - c * first", "a * second + c * first"),

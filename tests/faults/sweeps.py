@@ -232,4 +232,12 @@ FAULTS = [
     ),
     Fault("files in any order", "studies/sweep/words.py", "found = sorted(name for", "found = list(name for"),
     Fault("files from elsewhere", "studies/sweep/words.py", "root_dir=folder", "root_dir=None"),
+    Fault(
+        "steps found though they vary",
+        "studies/sweep/plan.py",
+        'stated=time_step is not None or histories or "run.time_step" in spanned.paths',
+        "stated=time_step is not None",
+    ),
+    Fault("step not told", "studies/sweep/ways.py", "codes, step, found.turned", "codes, np.nan, found.turned"),
+    Fault("histories of coarse steps", "studies/sweep/ways.py", "step=step / found.finer", "step=step"),
 ]
