@@ -186,8 +186,9 @@ def test_what_is_remembered_changes_no_digit():
         assert found.identical(wanted), (turn, what, journey)
 
 
+@pytest.mark.filterwarnings("ignore::movingfrf.ValidityWarning")
 def test_the_next_vehicle_takes_moving_frfs_and_what_was_seen_where_they_are_the_same():
-    """Vehicles that vibrate alike, so that all frequencies are the same, with wheels elsewhere, or at another speed."""
+    """Vehicles that vibrate alike, so that frequencies are the same, with wheels elsewhere, or at another speed."""
     track = mf.track(mf.EulerBernoulliBeam(1.573e7, 711.9), mf.Spring(8.0e6, 3.0e4))
     surface = mf.realise(mf.IsoRoad.of_class("A", band=(0.02, 2.0)), length=90.0, start=-30.0)
 
