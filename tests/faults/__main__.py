@@ -153,6 +153,7 @@ def selection(fault: Fault | None) -> list[str]:
         return ["tests/test_optimise.py"]
     if file.startswith("studies/sweep") or fault in faults_of("sweeps"):
         return [
+            "tests/test_sweep_steps.py",
             "tests/test_roads_by_seed.py",
             "tests/test_sweep_page.py",
             "tests/test_sweep.py",

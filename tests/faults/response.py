@@ -251,7 +251,6 @@ FAULTS = [
         "lowest of samples alone", "metrics/entry.py", "return extremes(values.T)[0].T", "return values.min(axis=0)"
     ),
     Fault("values between samples off", "_basics/peaks.py", "np.sinc(away) * ", "np.sinc(away) ** 2 * "),
-    Fault("observed too coarsely", "response/sampling.py", "observed: float = 0.4", "observed: float = 1.6"),
     Fault("remembered: other times", "response/simulation.py", "known.steps == steps", "True"),
     Fault("one car counts", "response/along.py", "self.order.kind.count(number)", "1"),
     Fault("Cramer's rule turned", "response/batches.py", "a * second - c * first", "a * second + c * first"),

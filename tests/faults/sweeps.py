@@ -240,4 +240,5 @@ FAULTS = [
     ),
     Fault("step not told", "studies/sweep/ways.py", "codes, step, found.turned", "codes, np.nan, found.turned"),
     Fault("histories of coarse steps", "studies/sweep/ways.py", "step=step / found.finer", "step=step"),
+    Fault("observed too coarsely", "response/sampling.py", "observed: float = 0.4", "observed: float = 1.6"),
 ]
