@@ -156,7 +156,8 @@ class Plan(Remembering):
     @remembered
     def variants(self) -> Variants:
         """Its scenarios, which remember what they made from the first look on."""
-        return Variants(self.tables, self.folder, self.name)
+        tables = _shortened(self.tables) if self.response == "random" else self.tables
+        return Variants(tables, self.folder, self.name)
 
 
 def plan_of(
@@ -236,6 +237,17 @@ def plan_of(
             8.0 * channels * first.journey.samples * spanned.cases, f"histories of {count(spanned.cases, 'case')}"
         )
     return found
+
+
+def _shortened(tables: dict[str, Any]) -> dict[str, Any]:
+    """Let a journey end early where all roads of a spectrum are meant: none need be made as long as it."""
+    run = tables.get("run")
+    enough = 1.0  # [s; 0.5 to any duration: time only]
+    if not isinstance(run, dict) or not isinstance(run.get("duration"), int | float) or run["duration"] <= enough:
+        return tables
+    steps = run.get("time_step", 1e-3)
+    short = isinstance(steps, int | float) and 0.0 < steps < 0.1 * enough
+    return {**tables, "run": {**run, "duration": enough}} if short else tables
 
 
 def _moving(path: str) -> bool:
