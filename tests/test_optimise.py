@@ -457,3 +457,10 @@ def test_the_page_has_what_was_found(held):
     assert held.message.split(";")[0] in page
     assert "as it was" in page
     assert "at most 0.19" in page
+
+
+def test_the_scenario_that_was_found_at_random_travels_as_long_as_the_one_given():
+    said = tables(CAR, RIGID, {"kind": "iso_road", "road_class": "B"})
+    said["run"]["duration"] = 3.0
+    best = mf.optimise(said, over={DAMPING: (1e3, 2e3)}, minimise="contact_force_rms", response="random")
+    assert best.scenario.journey.duration == 3.0

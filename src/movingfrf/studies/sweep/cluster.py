@@ -86,7 +86,7 @@ def _prepared(asked: str) -> tuple[Plan, Variants]:
         plan.require_files()
     except ValueError as refused:
         raise ValueError(f"for a worker on {platform.node()} {refused}") from None
-    return plan, plan.variants
+    return plan, plan.to_solve
 
 
 @contextmanager

@@ -156,8 +156,15 @@ class Plan(Remembering):
     @remembered
     def variants(self) -> Variants:
         """Its scenarios, which remember what they made from the first look on."""
-        tables = _shortened(self.tables) if self.response == "random" else self.tables
-        return Variants(tables, self.folder, self.name)
+        return Variants(self.tables, self.folder, self.name)
+
+    @property
+    @remembered
+    def to_solve(self) -> Variants:
+        """The same as far as the answer needs them."""
+        if self.response != "random":
+            return self.variants
+        return Variants(_shortened(self.tables), self.folder, self.name)
 
 
 def plan_of(

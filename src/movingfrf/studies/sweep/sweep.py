@@ -167,7 +167,7 @@ def swept(
     if workers > 1 and folder is not None and len(mine) > 1:
         carried_on(plan, folder, kept, mine, min(workers, len(mine)), progress)
         return kept
-    variants = plan.variants
+    variants = plan.to_solve
     for done, number in enumerate(mine):
         first, last = cases_of(number, plan.axes.cases)
 

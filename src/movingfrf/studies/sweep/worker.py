@@ -13,7 +13,7 @@ from movingfrf.studies.sweep.solving import solved
 
 def solve_asked(plan: Plan, kept: Kept, asked: int) -> None:
     """Solve chunks until the pipe that tells which, and that other workers read as well, has no more of them."""
-    variants = plan.variants
+    variants = plan.to_solve
     while said := os.read(asked, CHUNKING.word):
         number = int.from_bytes(said)
         kept.put(number, solved(plan, variants, *cases_of(number, plan.axes.cases)))
