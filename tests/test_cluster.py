@@ -89,6 +89,7 @@ def tasks_left(cluster):
     return False
 
 
+@pytest.mark.slow
 def test_the_client_is_told_to_end_and_killed(given, cluster, tmp_path):
     """What is solved is stored, what is not is solved by nobody; called again, nothing is solved twice."""
     kept = tmp_path / "kept"
@@ -109,6 +110,7 @@ def test_the_client_is_told_to_end_and_killed(given, cluster, tmp_path):
     assert before.items() < stored(kept).items()
 
 
+@pytest.mark.slow
 def test_a_worker_is_killed(given, cluster, tmp_path):
     """Others take what it was at."""
     kept = tmp_path / "kept"

@@ -415,6 +415,7 @@ def test_the_command_in_parts_and_in_one(truck):
     assert not (truck.parent / "none").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="signals")
 def test_killed_at_any_moment_and_started_again(truck):
     """What is stored stays, and the end is the same, bit for bit."""

@@ -22,7 +22,7 @@ class Chunking:
     """How cases are put together; in brackets, between what each number is safe."""
 
     cases: int = 64  # of a chunk, where there are few [16 to 1024]
-    look: float = 0.05  # between looks at what other processes have solved [s; 0.01 to 1]
+    look: float = 0.02  # between looks at what other processes have solved [s; 0.01 to 1]
     most: int = 4096  # chunks; of more cases twice as many each, and so on [256 to 65 536]
     word: int = 4  # bytes of a number that a worker is told [a convention]
     answer: float = 5.0  # within which the scheduler of a cluster answers [s; 1 to 60]
