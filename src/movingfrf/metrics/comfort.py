@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -255,23 +255,30 @@ def weighted(acceleration: ArrayLike, time_step: float, name: str = "Wk", *, rec
     >>> round(float(np.sqrt(2) * hum[20_000:].std()), 4)
     0.9884
     """
-    import scipy.fft
-
     with checking() as check:
         name = check.choice("weighting", name, WEIGHTINGS)
         time_step = check.positive("time_step", time_step, "s")
         values, shape = _histories(check, "acceleration", acceleration, "m/s²")
+    if recorded:
+        values, _, _ = _without_line(values, time_step)
+    return weighted_rows(values.T, time_step, [name] * values.shape[1]).T.reshape(shape)
+
+
+def weighted_rows(rows: FloatArray, time_step: float, names: Sequence[str]) -> FloatArray:
+    """Weight histories that have been checked, (channel, time), each with a weighting of its own; as `weighted`."""
+    import scipy.fft
+
     # What is left of a weighting's memory at the end of the padding [1e-15 to 1e-7].
     forgotten = 1e-9
     # The slowest pole is that of the Butterworth high-pass: ω₁/√2.
-    memory = -np.log(forgotten) * np.sqrt(2) / (2 * np.pi * WEIGHTINGS[name].band[0])
-    if recorded:
-        values, _, _ = _without_line(values, time_step)
-    padded = scipy.fft.next_fast_len(len(values) + int(np.ceil(memory / time_step)), real=True)
-    factor = _factors(name, padded, time_step)
-    spectra = scipy.fft.rfft(values.T, padded)
-    spectra *= factor
-    return scipy.fft.irfft(spectra, padded, overwrite_x=True)[:, : len(values)].T.reshape(shape)
+    lowest = min(WEIGHTINGS[name].band[0] for name in names)
+    memory, samples = -np.log(forgotten) * np.sqrt(2) / (2 * np.pi * lowest), rows.shape[1]
+    padded = scipy.fft.next_fast_len(samples + int(np.ceil(memory / time_step)), real=True)
+    spectra = scipy.fft.rfft(rows, padded)
+    for spectrum, name in zip(spectra, names, strict=True):
+        spectrum *= _factors(name, padded, time_step)
+    found: FloatArray = scipy.fft.irfft(spectra, padded, overwrite_x=True)[:, :samples]
+    return found
 
 
 def running_rms(

@@ -16,7 +16,7 @@ from movingfrf.metrics.comfort import (
     WEIGHTINGS,
     Comfort,
     felt,
-    weighted,
+    weighted_rows,
 )
 from movingfrf.metrics.fatigue import spectral_fatigue
 from movingfrf.metrics.loads import (
@@ -148,16 +148,14 @@ class History:
         return self._measured[measure, variable]
 
     def weighted(self, dof: int) -> FloatArray:
-        """Weight an acceleration before it is cut; where all are asked for, with all that are weighted alike."""
+        """Weight an acceleration before it is cut; where all are asked for, with those beside it."""
         if dof not in self._weighted:
-            units, acceleration = self.arrays["dof_unit"], self.arrays["acceleration"]
-            alike = [dof] if self.judged else np.flatnonzero(units == units[dof]).tolist()
-            weighting = self.place("dof", dof).words["weighting"]
-            together = 8  # channels at a time [1 to 64: memory and time only]
-            for first in range(0, len(alike), together):
-                some = alike[first : first + together]
-                found = weighted(acceleration.T[some].T, self.step, weighting)[self.first :]
-                self._weighted.update(zip(some, found.T, strict=True))
+            rows, together = self.arrays["acceleration"].T, 8  # channels at a time [1 to 64: memory and time only]
+            first = dof - dof % together
+            some = [dof] if self.judged else list(range(first, min(first + together, len(rows))))
+            names = [self.place("dof", one).words["weighting"] for one in some]
+            found = weighted_rows(rows[some], self.step, names)[:, self.first :]
+            self._weighted.update(zip(some, found, strict=True))
         return self._weighted[dof]
 
     def felt(self, dof: int) -> Comfort:
