@@ -37,8 +37,8 @@ FAULTS = [
     Fault(
         "weighting wraps around",
         "metrics/comfort.py",
-        "len(values) + int(np.ceil(memory / time_step))",
-        "len(values)",
+        "samples + int(np.ceil(memory / time_step))",
+        "samples",
     ),
     Fault("gravity weighted", "metrics/comfort.py", "return values - middle - np", "return values - np"),
     Fault(
