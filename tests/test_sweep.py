@@ -209,6 +209,14 @@ def test_histories(truck, tmp_path):
     assert table.identical(mf.sweep(truck, axes, histories=True, store=tmp_path / "kept"))
 
 
+def test_a_step_that_varies_stands_once_in_the_table(truck):
+    table = mf.sweep(
+        truck, {"run.time_step": [1e-3, 2e-3], "vehicle.footprint": [0.0, 0.1, 0.2]}, measures="static_load"
+    )
+    rows = list(csv.DictReader(as_csv(table).splitlines()))
+    assert [row["time_step [s]"] for row in rows] == 3 * ["0.001"] + 3 * ["0.002"]
+
+
 def test_histories_over_roads(truck):
     roads = [{"kind": "bump", "height": height, "width": 1.0, "at": 6.0} for height in (0.01, 0.02)]
     table = mf.sweep(truck, {"roughness": roads}, histories=True)
@@ -220,6 +228,7 @@ def test_histories_over_roads(truck):
     ("axes", "asked", "words"),
     [
         ({"run.speed": np.linspace(8.0, 12.0, 10**6)}, {}, r"histories of 1000000 cases needs about \d+ GiB"),
+        ({"run.duration": [1.0, 1e9]}, {}, r"histories of 2 cases needs about \S+ GiB"),
         ({"run.time_step": [1e-3, 2e-3]}, {}, r"run\.time_step must not vary"),
         ({"run.speed": [9.0]}, {"response": "random"}, r"histories are those of response=\"simulate\""),
     ],

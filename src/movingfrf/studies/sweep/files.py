@@ -41,7 +41,8 @@ def as_csv(table: xr.Dataset) -> str:
             here = _unit(table, unit, number)
             head = f"{name} {word}{'' if here == '1' else f' [{here}]'}"
             columns.append((head, values.values[..., number].ravel()))
-    others = [name for name in ("time_step", "status", "findings") if name in table]
+    # A step that varies is an axis, and stands with these.
+    others = [name for name in ("time_step", "status", "findings") if name in table.data_vars]
     columns += [(with_unit(name, table[name]), table[name].values.ravel()) for name in others]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

@@ -240,9 +240,15 @@ def plan_of(
     if histories:
         # Forces, deflections and roughness of contacts; motions and accelerations of degrees of freedom.
         channels = 3 * len(first.vehicle.contacts) + 2 * len(first.vehicle.dof_names)
-        require_memory(
-            8.0 * channels * first.journey.samples * spanned.cases, f"histories of {count(spanned.cases, 'case')}"
+        # As long as the longest: what is shorter is filled up.
+        axis = next((axis for axis in spanned if "run.duration" in axis.paths), None)
+        said = (
+            []
+            if axis is None
+            else [value for value in axis.along("run.duration") if isinstance(value, int | float)]
         )
+        samples = max([first.journey.duration, *said]) / first.journey.time_step
+        require_memory(8.0 * channels * samples * spanned.cases, f"histories of {count(spanned.cases, 'case')}")
     return found
 
 
