@@ -64,9 +64,9 @@ def test_waves_that_only_the_forces_have(tmp_path):
     truck.write_text(truck.read_text().replace("duration = 1.0", "duration = 20.0"))
     stations = np.arange(-20.0, 240.0, 0.003)
     long, ripples = (np.sin(2 * np.pi * stations / length) for length in (50.0, 0.009))
-    mf.write_profile(mf.Profile(stations, 20e-3 * long + 1e-6 * ripples), tmp_path / "road.csv")
-    found, fine = (mf.sweep(truck, {"roughness": [FILE]}, time_step=step) for step in (None, 2.5e-4))
-    # They come at 1111 Hz, above what these steps show.
-    assert 0.5 / found.time_step.item() < 1100.0
+    mf.write_profile(mf.Profile(stations, 20e-3 * long + 1e-5 * ripples), tmp_path / "road.csv")
+    found, fine = (mf.sweep(truck, {"roughness": [FILE]}, time_step=step) for step in (None, 1e-4))
+    # They come at 1111 Hz: a record in these steps alone would be a twentieth off in its peaks.
+    assert found.time_step.item() > 3e-4
     for name in ("acceleration_rms", "acceleration_peak", "contact_force_rms"):
-        np.testing.assert_allclose(found[name], fine[name], rtol=0.02, err_msg=name)
+        np.testing.assert_allclose(found[name], fine[name], rtol=0.01, err_msg=name)
