@@ -100,6 +100,11 @@ def test_designs_that_are_refused(truck):
         mf.sensitivity(None, "static_load")
 
 
+def test_keys_of_a_design_have_ranges_of_their_own():
+    with pytest.raises(ValueError, match=r"over must have a range for each key, got one for all of .*run\.start"):
+        mf.design({("run.speed", "run.start"): (10.0, 30.0)}, samples=8)
+
+
 def test_the_command_draws_samples(truck):
     out = truck.parent / "drawn"
     over = ["--over", "run.speed=8~12", "--over", "vehicle.tyre_stiffness.0=3e6~4e6"]

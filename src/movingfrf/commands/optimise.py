@@ -61,8 +61,9 @@ def optimise(
         from movingfrf.studies.optimisation.optimise import optimised
         from movingfrf.studies.optimisation.page import findings, render, tables
         from movingfrf.studies.optimisation.problem import problem_of
-        from movingfrf.studies.optimisation.words import limits_in, ranges_in
+        from movingfrf.studies.optimisation.words import limits_in
         from movingfrf.studies.sweep.files import as_csv
+        from movingfrf.studies.sweep.words import ranges_in
 
         def place(said: str | None) -> int | str | None:
             return int(said) if said is not None and said.isdecimal() else said

@@ -1,46 +1,9 @@
-"""Ranges and limits as they are written in a line: `vehicle.damping=1e3~1e5`, `weighted_acceleration_rms=0.5`."""
+"""Limits as they are written in a line: `weighted_acceleration_rms=0.5`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import Any
-
-
-def ranges_in(lines: Iterable[str]) -> dict[Any, tuple[float, float]]:
-    """Understand ranges of keys.
-
-    Parameters
-    ----------
-    lines : iterable of str
-        Each `KEY=LOW~HIGH`; keys that have one value have commas between them.
-
-    Returns
-    -------
-    dict
-        As `optimise` takes them.
-
-    Raises
-    ------
-    ValueError
-        If a line is none, or a key stands twice.
-
-    Examples
-    --------
-    >>> ranges_in(["vehicle.damping=1e3~1e5", "vehicle.axles.0,vehicle.axles.1=1~2"])
-    {'vehicle.damping': (1000.0, 100000.0), ('vehicle.axles.0', 'vehicle.axles.1'): (1.0, 2.0)}
-    """
-    found: dict[Any, tuple[float, float]] = {}
-    for line in lines:
-        key, _, ends = (part.strip() for part in line.partition("="))
-        low, high = _ends(ends)
-        keys = tuple(each.strip() for each in key.split(","))
-        if low is None or high is None or not all(keys):
-            raise ValueError(f"--over {line} must be KEY=LOW~HIGH, as vehicle.suspension_damping.0=1e4~2e5")
-        name = keys if len(keys) > 1 else key
-        if name in found:
-            raise ValueError(f"--over {line}: {key} varies twice")
-        found[name] = low, high
-    return found
 
 
 def limits_in(lines: Iterable[str]) -> dict[Any, Any]:

@@ -103,6 +103,9 @@ def design(over: Mapping[str, Any], *, samples: int, kind: str = "sobol", seed: 
         kind = check.choice("kind", kind, ("sobol", "latin_hypercube", "random", "saltelli"))
         if not isinstance(over, Mapping) or not over:
             check.refuse("over", f"must be a mapping from keys to ranges (low, high), got {shown(over)}")
+        for path in over if isinstance(over, Mapping) else ():
+            if not isinstance(path, str):
+                check.refuse("over", f"must have a range for each key, got one for all of {shown(path)}")
         if kind in ("sobol", "saltelli") and samples & (samples - 1):
             power = 1 << samples.bit_length()
             check.refuse("samples", f"must be a power of two for {kind}, got {samples}; the next one is {power}")

@@ -115,32 +115,34 @@ def _value(text: str) -> Any:
         return text
 
 
-def ranges_in(lines: Iterable[str]) -> dict[str, tuple[float, float]]:
-    """Understand ranges of a design, as `run.speed=10~30`.
+def ranges_in(lines: Iterable[str]) -> dict[Any, tuple[float, float]]:
+    """Understand ranges of keys, as `run.speed=10~30`; keys that have one value have commas between them.
 
     Raises
     ------
     ValueError
-        If a line is none.
+        If a line is none, or a key stands twice.
 
     Examples
     --------
-    >>> ranges_in(["run.speed=10~30"])
-    {'run.speed': (10.0, 30.0)}
+    >>> ranges_in(["run.speed=10~30", "vehicle.axles.0,vehicle.axles.1=1~2"])
+    {'run.speed': (10.0, 30.0), ('vehicle.axles.0', 'vehicle.axles.1'): (1.0, 2.0)}
     """
-    found: dict[str, tuple[float, float]] = {}
+    found: dict[Any, tuple[float, float]] = {}
     for line in lines:
         key, _, values = (part.strip() for part in line.partition("="))
-        low, tilde, high = values.partition("~")
+        keys = tuple(each.strip() for each in key.split(","))
+        low, _, high = values.partition("~")
         try:
-            if not (key and tilde):
-                raise ValueError
             ends = float(low), float(high)
+            if not all(keys):
+                raise ValueError
         except ValueError:
-            raise ValueError(f"--over {line} must be KEY=LOW~HIGH for a design, as run.speed=10~30") from None
-        if key in found:
+            raise ValueError(f"--over {line} must be KEY=LOW~HIGH, as run.speed=10~30") from None
+        name = keys if len(keys) > 1 else key
+        if name in found:
             raise ValueError(f"--over {line}: {key} varies twice")
-        found[key] = ends
+        found[name] = ends
     return found
 
 
